@@ -16,7 +16,6 @@ from rmw_manycore_py.runs.lines import LineBuffer, Message, encoded
 
 # A client that lags further behind is disconnected.
 MAX_QUEUE_BYTES = 4 << 20
-_GOODBYE_S = 1.0
 
 
 class Connection:
@@ -63,7 +62,9 @@ class Connection:
             self.close()
 
     def attach(self, node: str) -> None:
-        """Forward the output of a node from now on."""
+        """Forward the output of a node from now on, unless the client has gone."""
+        if self._is_finished:
+            return
         self.node = node
         self._runner.taps[node].append(self._output)
 
@@ -86,16 +87,17 @@ class Connection:
         if not self._is_watched:
             return
         self._is_watched = False
+        self._is_finished = True
         if self.node is not None:
             self._runner.taps[self.node].remove(self._output)
         self._runner.unwatch(self._client)
         self._client.close()
         self._closed(self)
 
-    def say_goodbye(self) -> None:
-        """Send queued messages at the end of the run, waiting briefly, and close."""
+    def say_goodbye(self, timeout_s: float) -> None:
+        """Send queued messages at the end of the run, and close."""
         with suppress(OSError):
-            self._client.settimeout(_GOODBYE_S)
+            self._client.settimeout(timeout_s)
             self._client.sendall(self._queue)
         self.close()
 
@@ -122,12 +124,18 @@ class Connection:
             self.close()
             return
         try:
-            for message in self._lines.take(data):
-                self._handle(self, message)
+            self._take(data)
         except ManycoreError as error:
             self.finish({"error": str(error)})
-        except (KeyError, TypeError, ValueError) as error:  # values of a wrong type
-            self.finish({"error": f"invalid request: {error}"})
+        except Exception as error:  # no client can end the run, whatever it sends
+            self.finish({"error": f"the request failed: {type(error).__name__}: {error}"})
+
+    def _take(self, data: bytes) -> None:
+        """Handle requests; what follows the last one is ignored."""
+        for message in () if self._is_finished else self._lines.take(data):
+            if self._is_finished:
+                break
+            self._handle(self, message)
 
     def _flush(self) -> None:
         try:

@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 import base64
+import errno
 import os
 import socket
 import struct
-from collections.abc import Callable
+import time
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import asdict
 from typing import Any
 
@@ -15,10 +18,22 @@ from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.connection import Connection
 from rmw_manycore_py.launch.events import Ended, Event, Output, Restarting
 from rmw_manycore_py.launch.processes.node_process import NodeProcess
+from rmw_manycore_py.launch.requests import (
+    Attach,
+    Follow,
+    Restart,
+    State,
+    Stop,
+    Typing,
+    request_of,
+)
 from rmw_manycore_py.launch.runner import Runner
-from rmw_manycore_py.runs.lines import Message
+from rmw_manycore_py.runs.lines import Message, encoded
 
 _CREDENTIALS = struct.Struct("3i")
+# More than one person's shells; keeps file descriptors free for nodes.
+MAX_CLIENTS = 64
+_GOODBYE_S = 1.0
 
 
 class Control:
@@ -28,13 +43,7 @@ class Control:
         self._listener = listener
         self._runner = runner
         self._connections: list[Connection] = []
-        self._requests: dict[str, Callable[[Connection, Message], None]] = {
-            "state": self._state,
-            "stop": self._stop,
-            "restart": self._restart,
-            "follow": self._follow,
-            "attach": self._attach,
-        }
+        self._spare = socket.socket()  # only a descriptor, for `_turn_away`
         runner.watch(listener, self._accept)
 
     def report(self, event: Event) -> None:
@@ -59,59 +68,78 @@ class Control:
     def close(self) -> None:
         """Disconnect all clients."""
         self._runner.unwatch(self._listener)
+        deadline_s = time.monotonic() + _GOODBYE_S
         for connection in tuple(self._connections):
-            connection.say_goodbye()
+            connection.say_goodbye(max(deadline_s - time.monotonic(), 0))
+        self._spare.close()
 
     def _accept(self) -> None:
         try:
             client, _ = self._listener.accept()
-        except OSError:  # the client has gone, or out of file descriptors
+        except OSError as error:
+            if error.errno in (errno.EMFILE, errno.ENFILE):
+                self._turn_away()
             return
-        size = _CREDENTIALS.size
-        credentials = client.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, size)
-        if _CREDENTIALS.unpack(credentials)[1] not in (os.geteuid(), 0):
+        try:
+            if len(self._connections) >= MAX_CLIENTS:
+                _refuse(client, f"{MAX_CLIENTS} clients are connected to this run already")
+            elif not _is_allowed(client):
+                client.close()
+            else:
+                self._connections.append(
+                    Connection(client, self._runner, self._serve, self._connections.remove)
+                )
+        except OSError:  # the client has gone, or the selector has no room
             client.close()
-            return
-        connection = Connection(client, self._runner, self._serve, self._connections.remove)
-        self._connections.append(connection)
+
+    def _turn_away(self) -> None:
+        """Refuse a client by the spare descriptor: waiting, it would wake the loop for ever."""
+        self._spare.close()
+        with suppress(OSError):
+            client, _ = self._listener.accept()
+            _refuse(client, "the supervisor is out of file descriptors (ulimit -n)")
+        with suppress(OSError):
+            self._spare = socket.socket()
 
     def _serve(self, connection: Connection, message: Message) -> None:
         if connection.node is not None:
-            _use_terminal(connection, message)
+            _type(connection, Typing.of(message))
             return
-        request = self._requests.get(str(message.get("do")))
-        if request is None:
-            raise ManycoreError(f"unknown request {message.get('do')!r}")
-        request(connection, message)
+        request = request_of(message)
+        match request:
+            case State():
+                connection.finish({"nodes": [_row(node) for node in self._runner.nodes]})
+            case Stop():
+                self._stop(connection, request)
+            case Restart():
+                self._restart(connection, request)
+            case Follow():
+                connection.send({})
+                connection.follows_logs = True
+            case Attach():
+                self._attach(connection, request)
 
-    def _state(self, connection: Connection, _message: Message) -> None:
-        connection.finish({"nodes": [_row(node) for node in self._runner.nodes]})
-
-    def _stop(self, connection: Connection, message: Message) -> None:
-        names = _names(message)
+    def _stop(self, connection: Connection, request: Stop) -> None:
+        names = _unique(request.nodes or ())
         nodes = [self._runner.node(name) for name in names]
         connection.send({"waits_for": [n.program.name for n in nodes if n.is_alive]})
         connection.wants_events = True
-        if not names:
+        if request.nodes is None:
             self._runner.stop_all("manycore stop")
         for name in names:
             self._runner.stop_node(name)
 
-    def _restart(self, connection: Connection, message: Message) -> None:
-        names = _names(message)
+    def _restart(self, connection: Connection, request: Restart) -> None:
+        names = _unique(request.nodes)
         for name in names:
             self._runner.node(name)  # check all names before stopping any
         connection.send({"waits_for": names})
         connection.wants_events = True
         for name in names:
-            self._runner.restart_node(name, bool(message.get("terminal")))
+            self._runner.restart_node(name, request.terminal)
 
-    def _follow(self, connection: Connection, _message: Message) -> None:
-        connection.send({})
-        connection.follows_logs = True
-
-    def _attach(self, connection: Connection, message: Message) -> None:
-        node = self._runner.node(str(message.get("node")))
+    def _attach(self, connection: Connection, request: Attach) -> None:
+        node = self._runner.node(request.node)
         name = node.program.name
         if not node.program.terminal:
             raise ManycoreError(
@@ -127,19 +155,29 @@ class Control:
         lines = "".join(f"{line}\r\n" for line in node.last_lines)
         connection.send({"output": base64.b64encode(lines.encode()).decode()})
         connection.attach(name)
-        _use_terminal(connection, message)
+        _type(connection, Typing(size=request.size))
 
 
-def _use_terminal(connection: Connection, message: Message) -> None:
-    if "input" in message:
-        connection.type(base64.b64decode(str(message["input"])))
-    if "size" in message:
-        rows, columns = (max(0, min(int(number), 0xFFFF)) for number in message["size"])
-        connection.resize(rows, columns)
+def _refuse(client: socket.socket, reason: str) -> None:
+    with client:
+        client.setblocking(False)
+        client.send(encoded({"error": reason}))
 
 
-def _names(message: Message) -> list[str]:
-    return [str(name) for name in message.get("nodes") or ()]
+def _is_allowed(client: socket.socket) -> bool:
+    credentials = client.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
+    return _CREDENTIALS.unpack(credentials)[1] in (os.geteuid(), 0)
+
+
+def _type(connection: Connection, typing: Typing) -> None:
+    if typing.input:
+        connection.type(typing.input)
+    if typing.size is not None:
+        connection.resize(*typing.size)
+
+
+def _unique(names: Iterable[str]) -> list[str]:
+    return list(dict.fromkeys(names))
 
 
 def _row(node: NodeProcess) -> dict[str, Any]:

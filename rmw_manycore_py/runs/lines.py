@@ -17,16 +17,19 @@ class LineBuffer:
     """Splits received bytes into messages."""
 
     def __init__(self) -> None:
-        self._rest = b""
+        self._rest = bytearray()
 
     def take(self, data: bytes) -> list[Message]:
         """Return the complete messages received so far.
 
         :raises ManycoreError: if the input is not JSON objects.
         """
-        *lines, self._rest = (self._rest + data).split(b"\n")
-        if len(self._rest) > MAX_LINE_BYTES:
-            raise ManycoreError("control message too long")
+        self._rest += data  # in place: a slow writer must not cost a copy for each byte
+        lines = []
+        if b"\n" in data:
+            *lines, self._rest = self._rest.split(b"\n")
+        if any(len(line) > MAX_LINE_BYTES for line in (*lines, self._rest)):
+            raise ManycoreError(f"control message longer than {MAX_LINE_BYTES} bytes")
         return [_message(line) for line in lines]
 
 
@@ -35,11 +38,11 @@ def encoded(message: Message) -> bytes:
     return json.dumps(message).encode() + b"\n"
 
 
-def _message(line: bytes) -> Message:
+def _message(line: bytearray) -> Message:
     try:
         message = json.loads(line)
-    except ValueError as error:
-        raise ManycoreError("control message is not JSON") from error
+    except (ValueError, RecursionError) as error:
+        raise ManycoreError("control message is not JSON, or is nested too deeply") from error
     if not isinstance(message, dict):
         raise ManycoreError("control message is not a JSON object")
     return message

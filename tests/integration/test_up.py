@@ -258,28 +258,6 @@ def test_files_of_a_run_are_private(manycore, tmp_path, platform) -> None:
     run.path.parent.chmod(0o700)
 
 
-@pytest.mark.parametrize(
-    "request_line",
-    [
-        b'{"do": "restart", "nodes": 5}',
-        b'{"do": "attach", "node": "sleeper", "size": "large"}',
-        b'{"do": "fly"}',
-        b"[]",
-        b"\xff\xfe",
-    ],
-)
-def test_a_request_that_cannot_be_understood_is_refused(
-    start, tmp_path, platform, request_line: bytes
-) -> None:
-    sleeper = SLEEPER.replace("}", ", terminal: true}")
-    run = start(manycore_command("run", write(tmp_path, sleeper=sleeper)))
-    run.wait_for("sleeper started")
-    with the_run(platform).connect(TIMEOUT_S) as client, client.makefile("rb") as answers:
-        client.sendall(request_line + b"\n")
-        assert any("error" in json.loads(line) for line in answers)
-    assert run.stop() == 0
-
-
 def test_a_state_directory_that_cannot_be_had(start, tmp_path, platform) -> None:
     file = tmp_path / "file"
     file.touch()
