@@ -37,7 +37,10 @@ class Access:
     async def check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
         """Forward or reject a request."""
         refusal = self._refusal(request)
-        response = web.Response(status=403, text=refusal) if refusal else await handler(request)
+        if refusal:
+            response: web.StreamResponse = web.Response(status=403, text=refusal)
+        else:
+            response = await _handled(request, handler)
         if not response.prepared:
             response.headers.update(_HEADERS)
         return response
@@ -51,7 +54,18 @@ class Access:
         must_have_one = request.method != "GET" or "Upgrade" in request.headers
         if origin not in self._origins and (origin is not None or must_have_one):
             return "manycore view answers to its own page only"
-        given = request.path.split("/")[1]
-        if not hmac.compare_digest(given.encode(), self.listener.token.encode()):
+        # The path of "OPTIONS *" has no part; undecodable bytes are surrogates in it.
+        given = request.path.removeprefix("/").partition("/")[0].encode(errors="replace")
+        if not hmac.compare_digest(given, self.listener.token.encode()):
             return "wrong token: open the link that this manycore view has printed"
         return ""
+
+
+async def _handled(request: web.Request, handler: Handler) -> web.StreamResponse:
+    """Await the handler; a file that cannot be read is not found, e.g. for its long name."""
+    try:
+        return await handler(request)
+    except ConnectionError:  # the page was closed
+        raise
+    except OSError as error:
+        return web.Response(status=404, text=error.strerror)

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import tempfile
 from collections.abc import AsyncIterator, Awaitable
 from pathlib import Path
 from typing import Any
 
 from aiohttp import WSMsgType, web
+from aiohttp.http_exceptions import HttpProcessingError
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.picture.drawing import stylesheet
@@ -28,11 +30,17 @@ _SHUTDOWN_S = 1.0
 
 def serve(platform: str, listener: Listener, period_s: float) -> None:
     """Serve the page until a signal."""
+    logging.getLogger("aiohttp.server").addFilter(_is_of_server)
     with tempfile.TemporaryDirectory(prefix="manycore-view-") as kept:
         app = application(platform, period_s, Access(listener), Path(kept))
         web.run_app(
             app, sock=listener.socket, print=None, access_log=None, shutdown_timeout=_SHUTDOWN_S
         )
+
+
+def _is_of_server(record: logging.LogRecord) -> bool:
+    """Return whether an error is ours: aiohttp also logs each request that is not HTTP."""
+    return record.exc_info is None or not isinstance(record.exc_info[1], HttpProcessingError)
 
 
 def application(platform: str, period_s: float, access: Access, kept: Path) -> web.Application:
@@ -105,7 +113,7 @@ class Pages:
         try:
             async for message in live:
                 if message.type == WSMsgType.TEXT:
-                    with contextlib.suppress(ValueError):
+                    with contextlib.suppress(ValueError, RecursionError):
                         state.select(message.json())
                         selected.set()
         finally:
