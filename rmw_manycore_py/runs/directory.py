@@ -91,14 +91,16 @@ class RunDirectory:
     def info(self) -> Mapping[str, Any]:
         """Facts written by the supervisor at its start: pid, mapfile, nodes, detached, started."""
         try:
-            return dict(json.loads((self.path / _INFO).read_text()))
-        except (OSError, ValueError):
+            info = json.loads((self.path / _INFO).read_text())
+        except (OSError, ValueError, RecursionError):
             return {}
+        return info if isinstance(info, dict) else {}
 
     @property
     def nodes(self) -> list[str]:
         """Names under which the run's processes print, in order."""
-        return list(self.info.get("nodes", ()))
+        nodes = self.info.get("nodes")
+        return [str(name) for name in nodes] if isinstance(nodes, list) else []
 
     def connect(self, timeout_s: float) -> socket.socket:
         """Return a connection to the supervisor; raise OSError if there is none."""

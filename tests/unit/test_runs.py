@@ -14,7 +14,7 @@ import pytest
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.runs import log_file
 from rmw_manycore_py.runs.directory import RunDirectory, new_run, remove_ended, runs_of
-from rmw_manycore_py.runs.lines import LineBuffer, encoded
+from rmw_manycore_py.runs.lines import MAX_LINE_BYTES, LineBuffer, encoded
 from rmw_manycore_py.runs.log_file import LogFile, log_path, share_of
 from rmw_manycore_py.runs.log_reader import NodeLog, in_order
 
@@ -169,12 +169,19 @@ def test_platforms_of_another_directory_have_runs_of_their_own(
         assert runs_of("platform") == []
 
 
+@pytest.mark.parametrize("text", ["[" * 100_000, "5", '{"nodes": 5}', "", "\0"])
+def test_a_damaged_file_of_a_run_is_no_information(tmp_path: Path, text: str) -> None:
+    run = run_in(tmp_path)
+    (run.path / "run.json").write_text(text)
+    assert run.nodes == []
+
+
 def test_messages_are_cut_at_lines() -> None:
     lines = LineBuffer()
     data = encoded({"do": "state"}) + encoded({"do": "stop"})
     assert lines.take(data[:5]) == []
     assert lines.take(data[5:]) == [{"do": "state"}, {"do": "stop"}]
-    for bad in (b"[]\n", b"{\n", b"\xff\n"):
+    for bad in (b"[]\n", b"{\n", b"\xff\n", b"[" * 100_000 + b"\n", b" " * (MAX_LINE_BYTES + 1)):
         with pytest.raises(ManycoreError):
             LineBuffer().take(bad)
 
