@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import errno
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -65,6 +67,35 @@ class MapfileError(FileError):
 
 class DefinitionError(FileError):
     """All problems in definitions of messages, services and actions."""
+
+
+# By name: the native modules may be missing, and rclpy is loaded late.
+_REPORTED = {
+    "rmw_manycore_py._transport.PlatformError",
+    "rmw_manycore_py._ndt.NdtError",
+    "rclpy._rclpy_pybind11.RCLError",
+    "rclpy.exceptions.NameValidationException",
+}
+_WRITE_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+_C_PLACE = re.compile(r", at \S+:\d+.*", re.DOTALL)
+
+
+def reported(error: Exception) -> ManycoreError | None:
+    """Return what a command reports of an error, instead of a traceback; None for a bug.
+
+    Errors of the transport, of rcl and of the operating system have causes outside the program.
+    """
+    if isinstance(error, ManycoreError):
+        return error
+    if isinstance(error, OSError):
+        text = error.strerror or str(error)
+        is_write = error.errno in _WRITE_ERRORS
+        place = error.filename or ("the output cannot be written" if is_write else "")
+        return ManycoreError(f"{place}: {text}" if place else text)
+    names = {f"{kind.__module__}.{kind.__qualname__}" for kind in type(error).__mro__}
+    if names & _REPORTED or isinstance(error, MemoryError):
+        return ManycoreError(_C_PLACE.sub("", what_is_wrong(error)))
+    return None
 
 
 def what_is_wrong(error: Exception) -> str:

@@ -10,7 +10,7 @@ import sys
 from contextlib import suppress
 from typing import IO
 
-from rmw_manycore_py.errors import EXIT_FAILURE, EXIT_INTERRUPTED, ManycoreError
+from rmw_manycore_py.errors import EXIT_FAILURE, EXIT_INTERRUPTED, ManycoreError, reported
 from rmw_manycore_py.launch.events import Event, Output, event_of
 from rmw_manycore_py.launch.run import Run
 from rmw_manycore_py.launch.runner import Report
@@ -74,11 +74,10 @@ def _be_supervisor(run: Run, writer: int) -> None:
         progress = _Progress(writer)
         try:
             status = run.run(progress.report, all_started=progress.come_up)
-        except ManycoreError as error:
-            status = error.exit_status
-            progress.say({_ERROR: str(error), "exit_status": status})
         except Exception as error:
-            progress.say({_ERROR: f"{type(error).__name__}: {error}", "exit_status": status})
+            known = reported(error) or ManycoreError(f"{type(error).__name__}: {error}")
+            status = known.exit_status
+            progress.say({_ERROR: str(known), "exit_status": status})
     finally:
         os._exit(status)
 

@@ -16,7 +16,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.errors import reported
 from rmw_manycore_py.launch.run import Mode, Run
 from rmw_manycore_py.mapfile import check
 
@@ -28,9 +28,12 @@ def main() -> int:
         run = Run(check(mapfile), Mode(mapfile))
         threading.Thread(target=_stop_after_parent, daemon=True).start()
         return run.run(lambda event: _tell(event.as_data()), all_started=_come_up)
-    except ManycoreError as error:
-        _tell({"error": str(error), "exit_status": error.exit_status})
-        return error.exit_status
+    except Exception as error:
+        known = reported(error)
+        if known is None:
+            raise
+        _tell({"error": str(known), "exit_status": known.exit_status})
+        return known.exit_status
 
 
 def _come_up() -> None:

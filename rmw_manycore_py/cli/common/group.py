@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import sys
+from contextlib import suppress
 from typing import Any
 
 import click
@@ -13,7 +15,7 @@ from typing_extensions import override
 
 from rmw_manycore_hook import raise_on_interrupt
 from rmw_manycore_py.cli.common.suggestions import did_you_mean
-from rmw_manycore_py.errors import EXIT_INTERRUPTED, ManycoreError
+from rmw_manycore_py.errors import EXIT_INTERRUPTED, reported
 
 
 class LazyGroup(click.Group):
@@ -68,13 +70,22 @@ class LazyGroup(click.Group):
         return [*verbs, *click.Command.shell_complete(self, ctx, incomplete)]
 
     @override
+    def main(self, *args: Any, **kwargs: Any) -> Any:
+        try:
+            return super().main(*args, **kwargs)
+        except Exception as error:
+            known = reported(error)
+            if known is None:
+                raise
+            with suppress(OSError):
+                click.echo(f"manycore: {known}", err=True)
+            sys.exit(known.exit_status)
+
+    @override
     def invoke(self, ctx: click.Context) -> Any:
         try:
             raise_on_interrupt()
             return super().invoke(ctx)
-        except ManycoreError as error:
-            click.echo(f"manycore: {error}", err=True)
-            ctx.exit(error.exit_status)
         except KeyboardInterrupt:  # click would turn it into a failure
             ctx.exit(0 if ctx.invoked_subcommand in self._until_ctrl_c else EXIT_INTERRUPTED)
 

@@ -40,23 +40,11 @@ def tool_node(platform: str, name: str | None = None, *, sim_time: bool = False)
         parameter_overrides=[Parameter("use_sim_time", value=sim_time)],
     )
     try:
-        with suppress(KeyboardInterrupt), _errors_of_rcl():
+        with suppress(KeyboardInterrupt):
             yield node
     finally:
         node.destroy_node()
         rclpy.shutdown()
-
-
-@contextmanager
-def _errors_of_rcl() -> Iterator[None]:
-    """Translate rcl errors about a name or QoS policy; drop their C source locations."""
-    from rclpy._rclpy_pybind11 import RCLError
-    from rclpy.exceptions import NameValidationException
-
-    try:
-        yield
-    except (RCLError, NameValidationException) as error:
-        raise ManycoreError(str(error).partition(", at ")[0]) from error
 
 
 def result_of(node: Any, future: Any, whose: str) -> Any:
