@@ -20,6 +20,9 @@ from rmw_manycore_py.words import (
 class PlatformError(RuntimeError):
     """Something is wrong with a platform; the message says what to do."""
 
+class PlatformInUseError(PlatformError):
+    """The platform has living processes; the message names those that are visible."""
+
 class Qos:
     """The policies of an endpoint. Durations in nanoseconds, None = no limit."""
 
@@ -278,8 +281,11 @@ def platforms() -> list[str]:
 def platform_directory(name: str) -> str:
     """Return the directory that holds all files of a platform."""
 
-def clean(name: str) -> list[str]:
-    """Remove what a dead platform left and return the paths; PlatformError while it lives."""
+def clean(name: str, force: bool = False) -> list[str]:
+    """Remove what a dead platform left and return the paths; PlatformInUseError while it lives.
+
+    :param force: do not believe its lifelines, only the visible processes that use its files.
+    """
 
 class OwnTracer:
     """Notes what this process does beside its nodes, while its platform traces it.

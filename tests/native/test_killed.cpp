@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "killed_of_test.hpp"
+#include "transport/lifecycle/cleaning.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 #include "transport/lifecycle/trace_control.hpp"
 

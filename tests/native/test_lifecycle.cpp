@@ -17,6 +17,7 @@
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "private_shm.hpp"
+#include "transport/lifecycle/cleaning.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 #include "waiting.hpp"

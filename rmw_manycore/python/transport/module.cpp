@@ -5,6 +5,7 @@
 
 #include "platform/error.hpp"
 #include "python/transport/bindings.hpp"
+#include "transport/lifecycle/cleaning.hpp"
 
 namespace nb = nanobind;
 
@@ -13,6 +14,7 @@ NB_MODULE(_transport, module) {
   module.doc() =
     "The transport of rmw_manycore without ROS: inspects, configures and joins platforms.";
   const nb::exception<manycore::Error> error(module, "PlatformError", PyExc_RuntimeError);
+  const nb::exception<manycore::PlatformInUse> in_use(module, "PlatformInUseError", error);
   bind_qos(module);
   bind_rows(module);
   bind_platform(module);

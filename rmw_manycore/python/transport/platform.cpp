@@ -11,6 +11,7 @@
 #include "python/context.hpp"
 #include "python/transport/bindings.hpp"
 #include "python/transport/rows.hpp"
+#include "transport/lifecycle/cleaning.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/registry/graph.hpp"
 #include "transport/registry/smem_charge.hpp"
@@ -110,7 +111,7 @@ void bind_platform(nb::module_ & module) {
   module.def("platform_directory", [](const std::string & name) {
     return PlatformPaths::of(name).directory;
   });
-  module.def("clean", &clean_platform, nb::arg("name"));
+  module.def("clean", &clean_platform, nb::arg("name"), nb::arg("force") = false);
   module.def(
     "charge_smem", &charge, nb::arg("platform"), nb::arg("size_bytes"),
     nb::call_guard<nb::gil_scoped_release>());

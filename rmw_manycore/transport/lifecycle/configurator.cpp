@@ -59,15 +59,4 @@ std::vector<std::string> platform_names() {
   return names;
 }
 
-std::vector<std::string> clean_platform(const std::string & platform) {
-  const PlatformPaths paths = PlatformPaths::of(platform);
-  const JoinLock lock(paths);
-  if (is_alive(paths)) {
-    throw Error(
-      ErrorCode::invalid_argument,
-      "platform '" + platform + "' is alive; stop its nodes first ('manycore status' lists them)");
-  }
-  return remove_platform(paths);
-}
-
 }  // namespace manycore

@@ -30,8 +30,4 @@ private:
 /// Names of this user's platforms, running or dead.
 std::vector<std::string> platform_names();
 
-/// Removes the files of a dead platform and returns their paths. Throws Error{invalid_argument} if
-/// the platform is running.
-std::vector<std::string> clean_platform(const std::string & platform);
-
 }  // namespace manycore
