@@ -11,7 +11,8 @@ namespace manycore {
 namespace {
 
 constexpr uint64_t descriptor_limit = 1 << 16;
-constexpr uint64_t many_bytes = 16 << 20;
+constexpr uint64_t mebibyte = 1 << 20;
+constexpr uint64_t many_bytes = 16 * mebibyte;
 constexpr int pieces_per_message = 8;               ///< freed: about 0.25 ms
 constexpr uint64_t min_shrinking_bytes = 16 << 10;  ///< smaller rings do not shrink
 
@@ -265,41 +266,46 @@ bool TopicDsmWriter::add_generation_for(uint64_t need_bytes) {
 }
 
 void TopicDsmWriter::require_data_bytes(uint64_t need_bytes) {
-  if (need_bytes > UINT32_MAX) {  // limit of RecordDescriptor::size_bytes
-    endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
-    throw Error(
-      ErrorCode::too_large, "a message of " + std::to_string(need_bytes) + " bytes on '" +
-                              endpoint_.topic +
-                              "' is larger than 4 GiB, the maximum size of a record");
-  }
   if (need_bytes <= current_.data_bytes) {
     return;
   }
-  const std::string size = std::to_string(need_bytes);
   try {
-    if (add_generation_for(need_bytes)) {
+    if (need_bytes <= UINT32_MAX && add_generation_for(need_bytes)) {
       return;
     }
   } catch (const Error & error) {
     endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
     throw Error(
       error.code() == ErrorCode::no_space ? ErrorCode::too_large : error.code(),
-      "a message of " + size + " bytes on '" + endpoint_.topic +
-        "' needs a larger topic DSM, but " + error.what());
+      message_text(need_bytes) + " needs a larger topic DSM, but " + error.what());
   }
   endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
-  if (endpoint_.topic_dsm_size != 0) {
-    throw Error(
-      ErrorCode::too_large, "a message of " + size + " bytes does not fit the topic DSM of '" +
-                              endpoint_.topic + "' (" + std::to_string(endpoint_.topic_dsm_size) +
-                              " bytes); set its topic_dsm_size to at least " + size);
+  throw Error(ErrorCode::too_large, message_text(need_bytes) + refusal_text(need_bytes));
+}
+
+std::string TopicDsmWriter::message_text(uint64_t need_bytes) const {
+  return "a message of " + std::to_string(need_bytes) + " bytes on '" + endpoint_.topic + "'";
+}
+
+/// Why add_generation_for() adds none, and what helps.
+std::string TopicDsmWriter::refusal_text(uint64_t need_bytes) const {
+  if (need_bytes > UINT32_MAX) {  // limit of RecordDescriptor::size_bytes
+    return " is larger than 4 GiB, the maximum size of a record";
   }
-  throw Error(
-    ErrorCode::too_large,
-    "a message of " + size + " bytes on '" + std::string(endpoint_.topic) +
-      "' does not fit into cluster " + std::to_string(cluster_.id()) + ": " +
-      std::to_string(cluster_.used_bytes()) + " of " + std::to_string(cluster_.size()) +
-      " bytes of SMEM are used; it needs at least " + size + " free (is /dev/shm large enough?)");
+  const std::string own_size = "its topic_dsm_size to at least " + std::to_string(need_bytes);
+  if (endpoint_.topic_dsm_size != 0) {
+    return " does not fit its topic DSM of " + std::to_string(endpoint_.topic_dsm_size) +
+           " bytes; set " + own_size;
+  }
+  if (need_bytes <= data_limit()) {
+    return " needs a larger topic DSM, but subscriptions still hold messages of " +
+           std::to_string(max_generations - 1) + " earlier sizes of it; take them, or set " +
+           own_size;
+  }
+  const uint64_t helps = align_up(2 * need_bytes, mebibyte);
+  return " does not fit: a topic DSM grows to at most half of the SMEM of its cluster, which has " +
+         std::to_string(cluster_.size()) + " bytes; in a mapfile, set smem_size to at least " +
+         std::to_string(helps) + (need_bytes < cluster_.size() ? ", or " + own_size : "");
 }
 
 }  // namespace manycore
