@@ -14,7 +14,8 @@ from rmw_manycore_py.mapfile.launch_file.frontend import description
 from rmw_manycore_py.mapfile.launch_file.include import FRONTENDS, read_into
 from rmw_manycore_py.mapfile.launch_file.launched import LaunchedNode
 from rmw_manycore_py.mapfile.launch_file.python_file import read_python
-from rmw_manycore_py.mapfile.launch_file.stand_ins import stand_ins
+from rmw_manycore_py.mapfile.launch_file.reading_process import read_in_child
+from rmw_manycore_py.mapfile.launch_file.stand_ins import install_stand_ins
 
 FRONTENDS.update(
     {
@@ -39,12 +40,16 @@ class LaunchFile:
 
 def read_launch_file(file: Path, arguments: Mapping[str, str] | None = None) -> LaunchFile:
     """Read a launch file with the given launch arguments."""
-    context = LaunchContext(file, arguments or {})
+    return read_in_child(file, lambda: _read(file, arguments or {}))
+
+
+def _read(file: Path, arguments: Mapping[str, str]) -> LaunchFile:
+    context = LaunchContext(file, arguments)
     try:
-        with stand_ins(context):
-            read_into(context, file)
-            with context.reading(file):
-                context.finish()
+        install_stand_ins(context)
+        read_into(context, file)
+        with context.reading(file):
+            context.finish()
     except LaunchFileError as refused:
         raise MapfileError(refused.at(file, 0)) from refused
     declared = frozenset(context.declared)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Stand-ins of `launch` and `launch_ros`, in `sys.modules` only while a launch file is read.
+"""Stand-ins of `launch` and `launch_ros`, in `sys.modules` of the process that reads a launch file.
 
 They also replace installed packages, so that the meaning of a mapfile does not depend on the
 machine.
@@ -8,8 +8,7 @@ machine.
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -29,7 +28,6 @@ from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
 from rmw_manycore_py.ros import ament
 
 _PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml")
-_OURS = __name__.rpartition(".")[0]
 
 
 def _named(*things: Any) -> dict[str, Any]:
@@ -155,43 +153,16 @@ _ONE_EACH = {
 }
 
 
-@contextmanager
-def stand_ins(context: LaunchContext) -> Iterator[None]:
-    """Install the stand-ins for `import launch`, and remove them at the end."""
-    real = {name: module for name, module in sys.modules.items() if _is_ours(name)}
-    before = set(sys.modules)
-    path = list(sys.path)
-    for name in real:
+def install_stand_ins(context: LaunchContext) -> None:
+    """Install the stand-ins for `import launch` in this process, which reads the launch file."""
+    for name in [name for name in sys.modules if name.split(".")[0] in _PACKAGES]:
         del sys.modules[name]
     for name, content in _CONTENTS.items():
         sys.modules[name] = _module(name, content)
     for package, classes in _ONE_EACH.items():
         for name, thing in classes.items():
             _module_of_one(package, name, thing)
-    try:
-        with _lenient_index(context):
-            yield
-    finally:
-        sys.path[:] = path
-        for name in [n for n in sys.modules if _is_ours(n) or (n not in before and _uses_ours(n))]:
-            del sys.modules[name]
-        sys.modules.update(real)
-
-
-def _is_ours(name: str) -> bool:
-    return name.split(".")[0] in _PACKAGES
-
-
-def _uses_ours(name: str) -> bool:
-    """Return whether a module has imported stand-ins and must be dropped afterwards."""
-    found = list(vars(sys.modules[name]).values())
-    kinds = [one for one in found if isinstance(one, (type, ModuleType))]
-    return any(
-        one.__name__.split(".")[0] in _PACKAGES
-        if isinstance(one, ModuleType)
-        else any(base.__module__.startswith(_OURS) for base in one.__mro__)
-        for one in kinds
-    )
+    _make_index_lenient(context)
 
 
 def _module(name: str, content: Mapping[str, Any]) -> ModuleType:
@@ -210,8 +181,7 @@ def _module_of_one(package: str, name: str, thing: Any) -> None:
     _module(f"{package}.{words.lstrip('_')}", {name: thing})
 
 
-@contextmanager
-def _lenient_index(context: LaunchContext) -> Iterator[None]:
+def _make_index_lenient(context: LaunchContext) -> None:
     """Give packages that are not installed a share directory that does not exist.
 
     This lets a launch file that only looks up such a package be read; what uses its files cannot
@@ -221,26 +191,16 @@ def _lenient_index(context: LaunchContext) -> Iterator[None]:
         import ament_index_python
         from ament_index_python import packages
     except ImportError:
-        yield
         return
-    real = {name: getattr(packages, name) for name in _LOOKUPS}
     holders: tuple[Any, ...] = (ament_index_python, packages)
-    try:
-        for holder in holders:
-            holder.get_package_prefix = lambda package: str(_prefix(context, package))
-            holder.get_package_share_directory = lambda package, **_options: str(
-                _prefix(context, package) / "share" / package
-            )
-            holder.get_package_share_path = lambda package, **_options: (
-                _prefix(context, package) / "share" / package
-            )
-        yield
-    finally:
-        for holder in holders:
-            vars(holder).update(real)
-
-
-_LOOKUPS = ("get_package_prefix", "get_package_share_directory", "get_package_share_path")
+    for holder in holders:
+        holder.get_package_prefix = lambda package: str(_prefix(context, package))
+        holder.get_package_share_directory = lambda package, **_options: str(
+            _prefix(context, package) / "share" / package
+        )
+        holder.get_package_share_path = lambda package, **_options: (
+            _prefix(context, package) / "share" / package
+        )
 
 
 def _prefix(context: LaunchContext, package: str) -> Path:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -163,6 +164,33 @@ def test_the_environment_is_extended(read: Read, monkeypatch: pytest.MonkeyPatch
     first, second = launch.nodes
     assert first.env == {"KNOWN": "first+before:after", "NEW": "x"}
     assert second.env == {"KNOWN": "first+before:after"}
+
+
+def test_what_a_launch_file_changes_in_its_process(
+    read_python: Read, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Variables are kept, as launch keeps them for nodes; all else ends with the process."""
+    for name in ("CHANGED", "REMOVED"):
+        monkeypatch.setenv(name, "before")
+    monkeypatch.setenv("ADDED", "")
+    modules = set(sys.modules)
+    lines = (
+        "import http.server",
+        "os.environ.update(CHANGED='after', ADDED='x')",
+        "del os.environ['REMOVED']",
+        "os.chdir('/')",
+        "class Name(str): pass",
+        "class Level(int): pass",
+    )
+    actions = "node('e', arguments=[Name('a')], parameters=[{'level': Level(3)}])"
+    launch = read_python(actions, "\n    ".join(lines))
+    (node,) = launch.nodes
+    assert node.arguments == ("a",)
+    assert node.parameters == ({"level": 3},)
+    assert (os.environ["CHANGED"], os.environ["ADDED"]) == ("after", "x")
+    assert "REMOVED" not in os.environ
+    assert os.getcwd() != "/"
+    assert "http.server" not in set(sys.modules) - modules
 
 
 def test_paths_and_contents_of_files(read_python: Read, tmp_path: Path) -> None:
