@@ -88,13 +88,14 @@ def check(package: str) -> None:
     import json
 
     with open(f"{own_prefix()}/share/{package}/{MANIFEST}") as file:
-        needed = json.load(file)["dependencies"]
-    for name, expected in needed.items():
+        manifest = json.load(file)
+    for name, expected in manifest["dependencies"].items():
         if (found := hash_of(name)) != expected:
             raise ImportError(
                 f"package '{package}' in {own_prefix()} was built for {name} with the hash "
-                f"{expected}, but found {found or 'no such type'}: run `manycore interface build` "
-                f"for it again, or `manycore interface remove {package}`"
+                f"{expected}, but found {found or 'no such type'}: run "
+                f"`manycore interface build {manifest['source']}` again, or "
+                f"`manycore interface remove {package}`"
             )
 
 

@@ -13,6 +13,10 @@ from collections.abc import Iterator
 from itertools import takewhile
 from pathlib import Path
 
+import click
+
+from rmw_manycore_py.cli.main import cli
+
 ROOT = Path(__file__).parents[1]
 BLOCK = re.compile(r"^```(sh|console)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 HERE_DOCUMENT = re.compile(r"<<'?(\w+)'?.*?\n(.*?\n)??\1\n", re.DOTALL)
@@ -54,3 +58,21 @@ def _words(line: str) -> list[str]:
 
 def _until_end(words: Iterator[str]) -> list[str]:
     return list(takewhile(lambda word: word not in ENDS_OF_COMMANDS, words))
+
+
+def parse(arguments: list[str]) -> None:
+    """Parse a call as the command line does, without opening the files it names."""
+    context, command, words = click.Context(cli, info_name="manycore"), cli, arguments
+    while isinstance(command, click.Group) and words and not words[0].startswith("-"):
+        name, found, words = command.resolve_command(context, words)
+        assert found is not None
+        context, command = click.Context(found, context, name, **found.context_settings), found
+    values, left, _ = command.make_parser(context).parse_args(list(words))
+    assert left == [], f"what is left over: {left}"
+    for parameter in command.params:
+        value = values.get(parameter.name or "")
+        if isinstance(parameter, click.Argument) and parameter.required:
+            given = isinstance(value, (str, tuple)) and bool(value)
+            assert given, f"{parameter.make_metavar(context)} is missing"
+        if isinstance(parameter.type, click.Choice) and isinstance(value, str):
+            parameter.type.convert(value, parameter, context)

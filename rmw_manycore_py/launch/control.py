@@ -144,7 +144,7 @@ class Control:
         if not node.program.terminal:
             raise ManycoreError(
                 f"node '{name}' has no terminal: set `terminal: true` in the mapfile, or "
-                f"restart it with one: manycore attach --restart {name}"
+                f"restart it with one: `manycore attach --restart {name}`"
             )
         if not node.is_alive or node.is_leaderless:
             reason = f" ({node.ending.reason})" if node.ending else ""

@@ -84,7 +84,8 @@ class Publisher(Closing, Generic[Scalar]):
                 if not self._process.wait(seen, deadline.left_s()):
                     raise TransportTimeoutError(
                         f"{self.topic}: {found} of {count} subscriptions after {timeout_s:g} s; "
-                        "they match by topic, type and QoS: see `manycore topic info -v`"
+                        "they match by topic, type and QoS: see "
+                        f"`manycore topic info -v {self.topic}`"
                     )
 
     def close(self) -> None:

@@ -8,33 +8,13 @@ from pathlib import Path
 
 import click
 import pytest
-from doc_commands import ROOT, manycore_calls
-
-from rmw_manycore_py.cli.main import cli
+from doc_commands import ROOT, manycore_calls, parse
 
 pytestmark = pytest.mark.unit
 
 TARGET = re.compile(r"^([a-z-]+):", re.MULTILINE)
 CALL_OF_MAKE = re.compile(r"(?:^|`)make (?!-)([\w./-]+)", re.MULTILINE)
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
-
-
-def parse(arguments: list[str]) -> None:
-    """Parse a call as the command line does, without opening the files it names."""
-    context, command, words = click.Context(cli, info_name="manycore"), cli, arguments
-    while isinstance(command, click.Group) and words and not words[0].startswith("-"):
-        name, found, words = command.resolve_command(context, words)
-        assert found is not None
-        context, command = click.Context(found, context, name, **found.context_settings), found
-    values, left, _ = command.make_parser(context).parse_args(list(words))
-    assert left == [], f"what is left over: {left}"
-    for parameter in command.params:
-        value = values.get(parameter.name or "")
-        if isinstance(parameter, click.Argument) and parameter.required:
-            given = isinstance(value, (str, tuple)) and bool(value)
-            assert given, f"{parameter.make_metavar(context)} is missing"
-        if isinstance(parameter.type, click.Choice) and isinstance(value, str):
-            parameter.type.convert(value, parameter, context)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))

@@ -34,7 +34,7 @@ def existing_node(
         if wanted in names:
             return wanted
         if is_last_look:
-            meant = did_you_mean(wanted, names) or " (manycore node list shows all)"
+            meant = did_you_mean(wanted, names) or " (`manycore node list` shows all)"
             raise ManycoreError(f"{missing} '{wanted}'{meant}")
         time.sleep(_LOOK_S)
 

@@ -45,7 +45,7 @@ def existing_container(platform: str, name: str) -> str:
     """Return the full name of a container; raise ManycoreError if it does not exist."""
     full_name, known = absolute_name(name), containers_on(platform)
     if full_name not in known:
-        meant = did_you_mean(full_name, known) or " (manycore component list shows all)"
+        meant = did_you_mean(full_name, known) or " (`manycore component list` shows all)"
         raise ManycoreError(f"Unable to find container node '{full_name}'{meant}")
     return full_name
 

@@ -29,8 +29,8 @@ def check_built() -> Iterator[Finding]:
     yield Finding(SUBJECT, Verdict.OK, f"{names} in {store.directory}")
     for package, manifest in packages.items():
         if reason := _why_unused(manifest):
-            remove = f"manycore interface remove {package}"
-            advice = f"manycore interface build {manifest.source}, or {remove}"
+            remove = f"`manycore interface remove {package}`"
+            advice = f"`manycore interface build {manifest.source}`, or {remove}"
             yield Finding(SUBJECT, Verdict.WARNING, f"{package}: {reason}", advice)
 
 

@@ -21,7 +21,7 @@ def existing_lifecycle_node(platform: str, name: str) -> str:
     """Return the full name of a lifecycle node; raise ManycoreError if it does not exist."""
     full_name, known = absolute_name(name), lifecycle_nodes(platform)
     if full_name not in known:
-        meant = did_you_mean(full_name, known) or " (manycore lifecycle nodes shows all)"
+        meant = did_you_mean(full_name, known) or " (`manycore lifecycle nodes` shows all)"
         raise ManycoreError(f"Node not found: no '{full_name}' with a lifecycle{meant}")
     return full_name
 

@@ -183,7 +183,7 @@ class Player(Node):
         if self._scans.get_subscription_count() == 0:
             return (
                 "points_raw has no subscription: start a scan matcher first, for example "
-                "`manycore run mapfiles/ndt_offload.yaml`, in the same ROS_DOMAIN_ID"
+                "`manycore run ndt_offload`, in the same ROS_DOMAIN_ID"
             )
         return (
             f"no ndt_pose within {timeout_s:g} s, though points_raw has a subscriber: its "

@@ -146,8 +146,8 @@ def _publisher(stage: Stage, row: TopicRow, name: str) -> RawPublisher:
         return stage.publisher(name, row.type, row.type_hash, offer_of(row.offers))
     except ImportError as error:
         raise ManycoreError(
-            f"{row.name} cannot be played: {error}; manycore interface build PATH, or "
-            f"--exclude-topics {row.name}"
+            f"{row.name} cannot be played: {error}; `manycore interface build PATH`, "
+            f"or --exclude-topics {row.name}"
         ) from error
 
 

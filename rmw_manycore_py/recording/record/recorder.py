@@ -112,7 +112,7 @@ class Recorder:
         try:
             topic.follow(offers, self._depth)
         except ImportError as error:
-            self._refuse(name, f"({error}; manycore interface build PATH)")
+            self._refuse(name, f"({error}; `manycore interface build PATH`)")
             return
         if name not in self._topics:
             self._topics[name] = topic
@@ -120,8 +120,8 @@ class Recorder:
             if topic.row.schema is NO_SCHEMA:
                 self._tell(
                     f"{name}: type {topic.row.type} is not installed as its publisher has it: "
-                    "recorded without the definition, which viewers need; manycore interface build "
-                    "PATH"
+                    "recorded without the definition, which viewers need; "
+                    "`manycore interface build PATH`"
                 )
 
     def _new_topic(self, name: str, offer: Offer) -> RecordedTopic:

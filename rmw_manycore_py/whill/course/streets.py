@@ -58,7 +58,7 @@ def load_streets(path: Path) -> Street:
     except UNREADABLE as error:
         raise ManycoreError(
             f"{path}: expected the streets of a course, found: {what_is_wrong(error)}; make the "
-            "course again with 'manycore whill course'",
+            f"course again: `manycore whill course {path.parent}`",
             EXIT_BAD_INPUT,
         ) from error
     return Street(*columns)

@@ -191,7 +191,7 @@ class Drive:
         if not self._node.count_publishers(topics.CMD_VEL):
             return (
                 f"{waited}: nothing publishes {topics.CMD_VEL}; start the stack first, in the same "
-                f"ROS_DOMAIN_ID: manycore run {self._options.course}/whill.yaml (or give --run)"
+                f"ROS_DOMAIN_ID: `manycore run {self._options.course}/whill.yaml`, or give --run"
             )
         if not self._operator.pointed:
             return (

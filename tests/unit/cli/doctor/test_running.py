@@ -55,7 +55,7 @@ def test_packages_that_programs_do_not_use_are_warned_of() -> None:
     build("std_msgs")
     _, changed, hidden = check_built()
     assert changed.found == f"own_msgs: {HEADER} has changed since the package was built"
-    assert changed.advice.startswith("manycore interface build /src, or ")
+    assert changed.advice.startswith("`manycore interface build /src`, or ")
     assert hidden.found.startswith("std_msgs: programs use the package installed in ")
     assert {changed.verdict, hidden.verdict} == {Verdict.WARNING}
 

@@ -1,0 +1,62 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The commands that messages of this repository's programs advise, taken from their sources."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from source_texts import NATIVE, PYTHON, ROOT
+
+VALUE = "VALUE"  # in the place of what a message fills in
+# Texts of the command line's own help are no messages; its examples have a test of their own.
+HELP = ("examples", "option", "argument", "command", "group", "field", "Field")
+QUOTED = re.compile(r"(?<![\w'`])[`'](manycore [a-z][^`'\n]*)[`']")
+ANY = re.compile(r"(?<![\w/_.-])manycore ([a-z-]+)")
+LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
+# What may stand between two literals of one message.
+JOINED = re.compile(r'"\s*(?:\+\s*(?:[^";{}]*?)\s*\+)?\s*"')
+
+
+def messages() -> Iterator[tuple[Path, str]]:
+    """Yield file and text of each message, VALUE for what it fills in."""
+    for folder in PYTHON:
+        for file in sorted((ROOT / folder).rglob("*.py")):
+            for text in _of_python(ast.parse(file.read_text())):
+                yield file.relative_to(ROOT), text
+    for folder in NATIVE:
+        for file in sorted((ROOT / "rmw_manycore" / folder).rglob("*.[ch]pp")):
+            for text in LITERAL.findall(JOINED.sub(_join, file.read_text())):
+                yield file.relative_to(ROOT), text
+
+
+def _join(between: re.Match[str]) -> str:
+    return VALUE if "+" in between.group() else ""
+
+
+def _of_python(node: ast.AST) -> Iterator[str]:
+    if isinstance(node, ast.JoinedStr):
+        parts = (part.value if isinstance(part, ast.Constant) else VALUE for part in node.values)
+        yield "".join(map(str, parts))
+    elif isinstance(node, ast.Constant):
+        if isinstance(node.value, str):
+            yield node.value
+    elif not _is_help(node):
+        for child in ast.iter_child_nodes(node):
+            yield from _of_python(child)
+
+
+def _is_help(node: ast.AST) -> bool:
+    if isinstance(node, ast.Expr):  # a docstring
+        return isinstance(node.value, ast.Constant)
+    if isinstance(node, ast.Call):
+        name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+        return name in HELP
+    return False
+
+
+def advised() -> set[str]:
+    """Return the commands that messages quote."""
+    return {command for _, text in messages() for command in QUOTED.findall(text)}

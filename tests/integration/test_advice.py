@@ -1,0 +1,153 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Messages that name a command: the command is run as quoted, and the state is cured.
+
+tests/integration/test_clean.py does so for `manycore clean`, which cures damage of every kind.
+"""
+
+from __future__ import annotations
+
+import json
+import shlex
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from advice import QUOTED
+from forked import forked_example, forked_manycore
+from processes import kill_all
+from support import IS_MANYCORE, Program, manycore_command, wait_until
+
+from rmw_manycore_py.runs.directory import runs_of
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
+]
+
+MAPFILE = """
+nodes:
+  plain: {cluster: 1, command: [sleep, '1000'], ros_arguments: false}
+  typed: {cluster: 1, command: [cat], ros_arguments: false, terminal: true}
+"""
+Run = Callable[..., Program]
+
+
+@pytest.fixture
+def manycore(start) -> Run:
+    """Run `manycore` and check its exit status."""
+
+    def call(*words: str | Path, status: int = 0) -> Program:
+        program: Program = start(forked_manycore(*map(str, words)))
+        assert program.wait() == status, program
+        return program
+
+    return call
+
+
+@pytest.fixture
+def follow(manycore) -> Callable[[Program, str], Program]:
+    """Run the command that a program's last message quotes and that begins with some words."""
+
+    def run(program: Program, words: str) -> Program:
+        found = [one for one in QUOTED.findall(program.output) if one.startswith(words)]
+        assert found, f"no `{words} ...` is advised by {program}"
+        return manycore(*shlex.split(found[-1])[1:])
+
+    return run
+
+
+@pytest.fixture
+def up(start, tmp_path: Path, platform: str):
+    """Start a run in the background; it ends with the test."""
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text(MAPFILE)
+
+    def call(status: int = 0) -> Program:
+        program = start(manycore_command("up", "-d", mapfile))
+        assert program.wait() == status, program
+        return program
+
+    yield call
+    for run in runs_of(platform):
+        if run.is_alive:
+            start(forked_manycore("stop", "--now")).wait()
+
+
+def state_of(manycore: Run, node: str) -> str:
+    runs = json.loads(manycore("ps", "--json").output)
+    return next(str(row["state"]) for run in runs for row in run["nodes"] if row["name"] == node)
+
+
+def test_a_platform_that_is_running_already_is_stopped(up, follow) -> None:
+    up()
+    follow(up(status=1), "manycore stop")
+    up()
+
+
+def test_a_run_in_the_background_is_stopped(up, manycore) -> None:
+    said = up().lines[-1].partition("in the background: ")[2]
+    for command in said.split("; "):
+        if "logs" not in command:  # it would follow for ever
+            manycore(*shlex.split(command)[1:])
+    up()
+
+
+def test_a_node_is_restarted_and_its_log_shown(up, manycore, follow) -> None:
+    up()
+    manycore("stop", "typed")
+    refused = manycore("attach", "typed", status=1)
+    follow(refused, "manycore logs")
+    follow(refused, "manycore restart")
+    assert state_of(manycore, "typed") == "running"
+
+
+def test_a_node_is_given_a_terminal(up, start, manycore) -> None:
+    up()
+    (command,) = QUOTED.findall(manycore("attach", "plain", status=1).lines[-1])
+    attached = start(manycore_command(*shlex.split(command)[1:]))
+    wait_until(lambda: has_terminal(manycore, "plain"), "it has a terminal")
+    attached.signal(signal.SIGTERM)
+    attached.wait()
+    assert state_of(manycore, "plain") == "running"
+
+
+def has_terminal(manycore: Run, node: str) -> bool:
+    runs = json.loads(manycore("ps", "--json").output)
+    rows = [row for run in runs for row in run["nodes"] if row["name"] == node]
+    return any(row["terminal"] and row["state"] == "running" for row in rows)
+
+
+def test_a_trace_is_stopped_saved_or_discarded(start, manycore, follow, tmp_path) -> None:
+    start(forked_example("talker")).wait_for("Publishing")
+    idle = manycore("trace", "stop", status=1)
+    follow(idle, "manycore trace start")
+    follow(manycore("trace", "start", status=1), "manycore trace stop")
+    unsaved = manycore("trace", "start", status=1)
+    follow(unsaved, "manycore trace start --discard")
+    manycore("trace", "stop")
+    (save,) = (one for one in QUOTED.findall(unsaved.output) if " save " in one)
+    file = tmp_path / "trace.json"
+    manycore(*shlex.split(save.replace("FILE", str(file)))[1:])
+    assert file.exists()
+    manycore("trace", "start")
+    manycore("trace", "stop")
+
+
+def test_names_that_exist_are_listed(start, manycore, follow) -> None:
+    start(forked_example("talker")).wait_for("Publishing")
+    unknown = manycore("node", "info", "--spin-time", "0", "/nothing_like_it", status=1)
+    assert "/talker" in follow(unknown, "manycore node list").lines
+    traced = manycore("trace", "start", "--node", "/nothing_like_it", status=1)
+    assert "/talker" in follow(traced, "manycore node list").lines
+
+
+def test_a_dead_platform_is_removed(start, manycore, platform) -> None:
+    """Without names, `manycore clean` would also remove what other tests are looking at."""
+    start(forked_example("talker")).wait_for("Publishing")
+    kill_all(platform)
+    status = manycore("status", "--platform", platform)
+    (command,) = QUOTED.findall(status.output)
+    assert command == "manycore clean"
+    manycore("clean", platform)
+    assert "no platform" in manycore("status", "--platform", platform, status=1).output
