@@ -316,29 +316,42 @@ TEST_CASE("a notifier marks what the thread on the callback word has to look at"
   }
 }
 
-TEST_CASE("threads share words when there are too few, and then nothing is forgotten") {
+TEST_CASE("threads share words when there are too few, but none that a thread may forget") {
   Fixture f(1);
-  const Watched watched(f.process->waiters(), f.subscriptions[0]->watchers());
+  Watchers & watchers = f.subscriptions[0]->watchers();
+  const Watched watched(f.process->waiters(), watchers);
   const auto publisher = f.process->create_publisher(on_topic(Fixture::topic(0), keep_last(10)));
-  std::vector<std::unique_ptr<WaitingThread>> threads;
-  WakeSet words = WakeSet::of(Waiters::word_of_this_thread());
-  while (!are_thread_numbers_shared()) {
-    threads.push_back(std::make_unique<WaitingThread>(*f.process, f.from(0, 1)));
-    words |= WakeSet::of(threads.back()->word());
-    REQUIRE(threads.size() <= thread_numbers);
+  const uint32_t own = Waiters::word_of_this_thread();
+  std::vector<std::unique_ptr<WaitingThread>> alone;
+  WakeSet unique = WakeSet::of(own);
+  while (unique.count() < unique_thread_numbers) {
+    alone.push_back(std::make_unique<WaitingThread>(*f.process, f.from(0, 1)));
+    REQUIRE_FALSE(unique.contains(alone.back()->word()));
+    unique |= WakeSet::of(alone.back()->word());
   }
-  CHECK(threads.size() == thread_numbers);  // this thread has one as well
-  words |= WakeSet::of(common_word);
-  words |= WakeSet::of(callback_word);
-  CHECK(words.parts == std::array<uint64_t, 2>{UINT64_MAX, UINT64_MAX});
+  std::vector<std::unique_ptr<WaitingThread>> sharing;
+  WakeSet shared;
+  for (uint32_t i = 0; i < 2 * (thread_numbers - unique_thread_numbers); ++i) {
+    sharing.push_back(std::make_unique<WaitingThread>(*f.process, f.from(0, 1)));
+    shared |= WakeSet::of(sharing.back()->word());
+  }
+  CHECK(shared.without(unique).count() == thread_numbers - unique_thread_numbers);
+  CHECK(shared.without(unique).parts == shared.parts);
+
+  watchers.add(own);
+  f.process->waiters().forget_this_thread();
+  CHECK_FALSE(watchers.read().contains(own));
+  std::thread([&] {  // shares a word
+    f.process->waiters().forget_this_thread();
+  }).join();
   publish(*publisher, 1);
-  for (const auto & thread : threads) {
+  for (const auto & thread : alone) {
     CHECK(thread->wake_ups() == 1);
   }
-  f.subscriptions[0]->watchers().add(Waiters::word_of_this_thread());
-  f.process->waiters().forget_this_thread();
-  CHECK(f.subscriptions[0]->watchers().read().contains(Waiters::word_of_this_thread()));
-  threads.clear();
-  WaitingThread later(*f.process, {});
-  CHECK_FALSE(are_thread_numbers_shared());  // the numbers were returned
+  for (const auto & thread : sharing) {
+    CHECK(thread->wake_ups() == 1);
+  }
+  alone.clear();
+  const WaitingThread later(*f.process, {});
+  CHECK(unique.contains(later.word()));  // the numbers were returned
 }

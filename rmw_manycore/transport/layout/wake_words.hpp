@@ -26,10 +26,9 @@ struct WakeWord {
   }
 };
 
-/// Enough for a hundred threads to have one each.
+/// Enough for a hundred threads to have one each, and for further ones to share the rest.
 constexpr uint32_t wake_words_per_process = 128;
-/// Word of the threads that wait for any notification of their process; each other word belongs to
-/// one thread.
+/// Word of the threads that wait for any notification of their process.
 constexpr uint32_t common_word = 0;
 /// Word of the thread that calls callbacks for arrivals. No other thread sleeps on it, so a
 /// publisher that makes the calls for its message need not wake it.

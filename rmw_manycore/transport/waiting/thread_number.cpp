@@ -7,18 +7,17 @@ namespace manycore {
 namespace {
 
 constexpr uint32_t numbers_per_part = 64;
-constexpr uint32_t parts = (thread_numbers + numbers_per_part - 1) / numbers_per_part;
+constexpr uint32_t parts = (unique_thread_numbers + numbers_per_part - 1) / numbers_per_part;
 
 /// Atomics instead of a mutex, which a child of fork() could find locked forever.
 std::atomic<uint64_t> taken[parts];
-std::atomic<uint32_t> sharing{0};  ///< threads that share a number because all were taken
 std::atomic<uint32_t> next_shared{0};
 
 /// Mask of the numbers in a part.
 constexpr uint64_t all_of(uint32_t part) {
-  return thread_numbers - part * numbers_per_part >= numbers_per_part
+  return unique_thread_numbers - part * numbers_per_part >= numbers_per_part
            ? ~uint64_t{0}
-           : (uint64_t{1} << thread_numbers % numbers_per_part) - 1;
+           : (uint64_t{1} << unique_thread_numbers % numbers_per_part) - 1;
 }
 
 class ThreadNumber {
@@ -34,14 +33,11 @@ public:
         }
       }
     }
-    shares_ = true;
-    sharing.fetch_add(1);
-    value_ = next_shared.fetch_add(1) % thread_numbers;
+    constexpr uint32_t shared = thread_numbers - unique_thread_numbers;
+    value_ = unique_thread_numbers + next_shared.fetch_add(1) % shared;
   }
   ~ThreadNumber() {
-    if (shares_) {
-      sharing.fetch_sub(1);
-    } else {
+    if (!is_shared_number(value_)) {
       taken[value_ / numbers_per_part].fetch_and(~(uint64_t{1} << value_ % numbers_per_part));
     }
   }
@@ -52,7 +48,6 @@ public:
 
 private:
   uint32_t value_ = 0;
-  bool shares_ = false;
 };
 
 }  // namespace
@@ -61,7 +56,5 @@ uint32_t thread_number() noexcept {
   thread_local const ThreadNumber number;
   return number.value();
 }
-
-bool are_thread_numbers_shared() noexcept { return sharing.load() != 0; }
 
 }  // namespace manycore

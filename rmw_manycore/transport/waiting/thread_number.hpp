@@ -6,12 +6,15 @@
 namespace manycore {
 
 constexpr uint32_t thread_numbers = 126;
+/// Numbers that one thread at a time has; the others are shared.
+constexpr uint32_t unique_thread_numbers = 100;
 
-/// Number of the calling thread, below `thread_numbers`. Unique from the thread's first call to its
-/// end while at most `thread_numbers` threads have one; further threads share numbers.
+constexpr bool is_shared_number(uint32_t number) noexcept {
+  return number >= unique_thread_numbers;
+}
+
+/// Number of the calling thread from its first call to its end, below `thread_numbers`. A shared
+/// one if all unique numbers are taken at that first call.
 uint32_t thread_number() noexcept;
-
-/// True while any thread shares its number.
-bool are_thread_numbers_shared() noexcept;
 
 }  // namespace manycore

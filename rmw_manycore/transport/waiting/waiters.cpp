@@ -34,9 +34,10 @@ void Waiters::notify_all() noexcept {
   }
 }
 
-/// A shared word stays: one thread may wait on it while another was woken for nothing.
+/// A shared word stays: one thread may wait on it while another was woken for nothing. No thread
+/// can begin to share a unique one while it is removed.
 void Waiters::forget_this_thread() noexcept {
-  if (are_thread_numbers_shared()) {
+  if (is_shared_number(thread_number())) {
     return;
   }
   const uint32_t word = word_of_this_thread();

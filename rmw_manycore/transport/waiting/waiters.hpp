@@ -23,7 +23,7 @@ public:
 
   /// For arrivals at subscriptions whose watchers were not changed.
   Waiter & common() noexcept { return waiters_.front(); }
-  /// Shared by several threads once more than `thread_numbers` threads wait.
+  /// Shared by several threads once more than `unique_thread_numbers` threads wait.
   Waiter & of_this_thread() noexcept { return waiters_[word_of_this_thread()]; }
   /// Word to add to the Watchers of everything that this thread waits for.
   static uint32_t word_of_this_thread() noexcept;
@@ -44,7 +44,8 @@ public:
   void notify_all() noexcept;
 
   /// Call when this thread was woken for nothing: removes its word from all watchers, so that
-  /// former waits wake it no more. Add the word again to what it waits for now.
+  /// former waits wake it no more. Add the word again to what it waits for now. No effect if the
+  /// thread shares its word.
   void forget_this_thread() noexcept;
 
 private:
