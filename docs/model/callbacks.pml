@@ -2,18 +2,23 @@
  *
  * Question: is each message reported to its callback, though a publisher of the same context spares
  * the thread that calls callbacks, and never waits, and the thread looks only at what is marked?
+ * Does a thread that holds a lock of the user destroy an entity, while another one's callback waits
+ * for that lock, and does no callback run that was cleared?
  *
- * Follows Outbox::publish, WakeWords::mark_arrival, CallbackMarks, CallbackThread::spared, ::report
- * and ::run, and Callback::set, with two publishers, the thread, and one that sets the callback
+ * Follows Outbox::publish, WakeWords::mark_arrival, CallbackMarks, CallbackThread::spared, ::report,
+ * ::run and ::remove, and Callback::set, with publishers, the thread, and one that sets the callback
  * meanwhile. A publisher with no callback in sight may as well be another process. What they share
- * is guarded by the mutex or changed by locked instructions, so store buffers are not modelled. A
+ * is guarded by a mutex or changed by locked instructions, so store buffers are not modelled. A
  * callback may publish itself, and a subscription may need a look that would wait for another
  * thread.
+ * OTHER=1: the callback is replaced, too; it takes a lock of the user, and a further thread that
+ * holds this lock destroys another entity.
  *
- * RUN MESSAGES=1
- * RUN MESSAGES=2 (long)
+ * RUN PUBLISHERS=2 MESSAGES=1 OTHER=0
+ * RUN PUBLISHERS=1 MESSAGES=1 OTHER=1
+ * RUN PUBLISHERS=2 MESSAGES=2 OTHER=0 (long)
  *
- * BUG 1: a publisher that does not get the mutex leaves it at that
+ * BUG 1: a publisher that does not get its turn leaves it at that
  * BUG 2: the thread reads the epoch after it has looked
  * BUG 3: the word is spared though no callback was in sight
  * BUG 4: a message that a callback publishes is not left to the thread
@@ -23,20 +28,29 @@
  * BUG 8: the thread takes the marks before it reads the epoch
  * BUG 9: what a publisher leaves to the thread is not marked
  * BUG 10: a callback that is set anew is not looked at until it is marked
+ * BUG 11 PUBLISHERS=1 MESSAGES=1 OTHER=1: no look after a publisher met a callback being set
+ * BUG 12 PUBLISHERS=1 MESSAGES=1 OTHER=1: a thread that clears a callback waits for its turn
+ * BUG 13 PUBLISHERS=1 MESSAGES=1 OTHER=1: a callback cleared without its mutex
  */
-#define PUBLISHERS 2
 
-bool locked;             /* the mutex */
-bool is_set;             /* the callback, guarded by the mutex */
+bool turn;               /* CallbackThread::turn_ */
+bool locked;             /* the mutex of the callback */
+bool is_set;             /* the callback; guarded by its mutex */
+bool is_listed;          /* guarded by CallbackThread::mutex_, as is the next one */
+bool changed;            /* the lists, since the thread looked */
 bool in_sight;           /* whether the bucket of the topic has some callback */
 bool watched;            /* whether the subscription's watchers have the thread's word */
 bool marked;             /* the subscription */
 bool left;               /* by a publisher to the thread */
-bool changed;            /* callbacks, guarded by the mutex */
 byte epoch;
 byte arrived, reported;
 byte by_callback = 1;    /* messages that the callback will publish */
 byte finished;
+
+bool users;              /* a lock of the user */
+bool other_locked, other_is_set, in_other;  /* the other entity's callback */
+
+inline lock(mutex) { atomic { !mutex -> mutex = true } }
 
 inline raise_epoch() { epoch++ }
 
@@ -47,12 +61,22 @@ inline leave() {
   raise_epoch()
 }
 
-/* With the mutex. */
+inline take_lock_of_user() {
+#if OTHER
+  lock(users);
+  users = false
+#else
+  skip
+#endif
+}
+
+/* With the mutex of the callback. */
 inline look() {
   n = arrived;
   if
   :: n > reported ->
     reported = n;
+    take_lock_of_user();
     if
     :: atomic { by_callback > 0 -> by_callback--; arrived++ };
 #if BUG != 4
@@ -61,35 +85,40 @@ inline look() {
     :: true
     fi
   :: else
-  fi
+  fi;
+  n = 0
 }
 
 inline report_or_leave() {
+  is_done = true;
   if
-  :: atomic { !locked -> locked = true };
+  :: atomic { !turn -> turn = true };
     if
-    :: is_set -> look()
-    :: is_set ->            /* would wait */
-#if BUG != 5
-      leave()
-#else
-      skip
-#endif
-    :: else
+    :: is_listed ->
+      if
+      :: atomic { !locked -> locked = true };
+        if
+        :: is_set -> look()
+        :: is_set -> is_done = (BUG == 5)   /* would wait */
+        :: else
+        fi;
+        locked = false
+      :: locked -> is_done = (BUG == 11)
+      fi
+    :: !is_listed
     fi;
-    locked = false
-  :: locked ->
-#if BUG != 1
-    leave()
-#else
-    skip
-#endif
+    turn = false
+  :: turn -> is_done = (BUG == 1)
+  fi;
+  if
+  :: is_done -> is_done = false
+  :: else -> leave()
   fi
 }
 
 proctype publisher() {
   byte n, sent;
-  bool spares;
+  bool spares, is_done;
   do
   :: sent < MESSAGES ->
     spares = in_sight;
@@ -110,50 +139,101 @@ proctype publisher() {
     :: !spares && !watched
 #endif
     fi;
-    sent++
+    atomic { sent++; spares = false }
   :: else -> break
   od;
   finished++
 }
 
-proctype setter() {
-  byte n;
-  atomic { !locked -> locked = true };
+inline add() {
   in_sight = true;
-  changed = true;
-  raise_epoch();
+  d_step { is_listed = true; changed = true };
+  raise_epoch()
+}
+
+inline set() {
+  lock(locked);
+  if
+  :: !is_listed -> add()
+  :: is_listed
+  fi;
   is_set = true;
   look();
-  locked = false;
+  locked = false
+}
+
+proctype setter() {
+  byte n;
+  set();
+#if OTHER
+  set();                 /* replaces the callback */
+#endif
+  finished++
+}
+
+/* A thread that holds a lock of the user. */
+proctype destroyer() {
+  lock(users);
+#if BUG == 12
+  lock(turn);
+#elif BUG != 13
+  lock(other_locked);
+#endif
+  other_is_set = false;
+#if BUG == 12
+  turn = false;
+#elif BUG != 13
+  other_locked = false;
+#endif
+  assert(!in_other);
+  users = false;
   finished++
 }
 
 /* Each is an exchange of its own. */
 inline take_marks() {
-#if BUG != 10
-  is_marked = changed;
-#endif
-  changed = false;
   d_step { is_marked = is_marked || marked; marked = false };
   d_step { is_marked = is_marked || left; left = false }
 }
 
 inline look_at_marked() {
+  lock(turn);
   if
-  :: is_marked -> look()
+  :: is_marked ->
+    lock(locked);
+    if
+    :: is_set -> look()
+    :: else
+    fi;
+    locked = false
   :: else
   fi;
-  is_marked = false
+#if OTHER
+  lock(other_locked);
+  if
+  :: other_is_set -> in_other = true; in_other = false
+  :: else
+  fi;
+  other_locked = false;
+#endif
+  turn = false
 }
 
 proctype thread() {
   byte n, seen;
-  bool is_marked;
+  bool is_marked, is_new;
 end_without_callback:
-  atomic { !locked && is_set -> locked = true };
+  is_listed;
 again:
+  atomic { is_new = changed; changed = false };
 #if BUG != 6
-  watched = true;
+  watched = watched || is_new;
+#endif
+#if BUG != 10
+  is_marked = is_new;
+#endif
+#if BUG != 6
+  is_new = false;
 #endif
 #if BUG == 2
   take_marks();
@@ -169,12 +249,11 @@ again:
   look_at_marked();
 #endif
 #if BUG == 6
-  watched = true;
+  watched = watched || is_new;
 #endif
-  locked = false;
+  is_marked = false;
 end_asleep:
   epoch != seen;
-  atomic { !locked -> locked = true };
   goto again
 }
 
@@ -183,6 +262,19 @@ init {
   :: in_sight = true      /* another callback, of the same bucket */
   :: true
   fi;
-  atomic { run publisher(); run publisher(); run setter(); run thread() };
-  finished == PUBLISHERS + 1 && timeout -> assert(reported == arrived)
+  atomic {
+    other_is_set = OTHER;
+    run publisher();
+    if
+    :: PUBLISHERS == 2 -> run publisher()
+    :: else
+    fi;
+    run setter();
+    run thread();
+    if
+    :: OTHER -> run destroyer()
+    :: else
+    fi
+  };
+  finished == PUBLISHERS + 1 + OTHER && timeout -> assert(reported == arrived)
 }

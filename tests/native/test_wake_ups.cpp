@@ -343,7 +343,8 @@ TEST_CASE("threads share words when there are too few, but none that a thread ma
   CHECK_FALSE(watchers.read().contains(own));
   std::thread([&] {  // shares a word
     f.process->waiters().forget_this_thread();
-  }).join();
+  })
+    .join();
   publish(*publisher, 1);
   for (const auto & thread : alone) {
     CHECK(thread->wake_ups() == 1);

@@ -166,6 +166,26 @@ def test_publishing_does_not_wait_for_a_callback_that_runs(node, arrivals_of):
     assert both.wait(TIMEOUT_S)
 
 
+def test_other_entities_come_and_go_while_a_callback_runs(node, arrivals_of):
+    """Such a callback may wait for a lock that the thread that sets or destroys holds."""
+    entered, released, in_time = threading.Event(), threading.Event(), []
+
+    def hold() -> None:
+        entered.set()
+        in_time.append(released.wait(TIMEOUT_S))
+
+    arrivals_of(listen(node), then=hold)
+    threading.Thread(target=speak(node).publish, args=(String(),), daemon=True).start()
+    assert entered.wait(TIMEOUT_S)
+    other = node.create_subscription(String, "other", print, DEEP)
+    node.create_publisher(String, "other", DEEP).publish(String())
+    assert Arrivals(other).count == 1
+    node.destroy_subscription(other)
+    released.set()
+    wait_until(lambda: in_time, "the callback ends")
+    assert in_time == [True]
+
+
 def test_messages_of_many_threads_are_all_reported_once(node, arrivals_of):
     arrivals = arrivals_of(listen(node))
     publishers = [speak(node) for _ in range(4)]

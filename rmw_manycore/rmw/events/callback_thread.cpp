@@ -8,20 +8,6 @@
 #include "platform/clock.hpp"
 
 namespace rmw_manycore {
-namespace {
-
-/// Afterwards one push_back() cannot fail.
-void make_room(std::vector<Callback *> & callbacks) {
-  if (callbacks.size() == callbacks.capacity()) {
-    callbacks.reserve(std::max<size_t>(4, 2 * callbacks.size()));
-  }
-}
-
-void erase(std::vector<Callback *> & callbacks, const Callback * callback) noexcept {
-  callbacks.erase(std::remove(callbacks.begin(), callbacks.end(), callback), callbacks.end());
-}
-
-}  // namespace
 
 CallbackThread::~CallbackThread() {
   stop();
@@ -31,52 +17,71 @@ CallbackThread::~CallbackThread() {
 }
 
 /// What may fail comes first.
-void CallbackThread::add(Callback & callback) {
-  if (callback.is_active_) {
+void CallbackThread::add(const std::shared_ptr<Reporter> & reporter) {
+  const std::lock_guard lock(mutex_);
+  if (reporter->order_ != 0) {
     return;
   }
-  Callbacks & group = group_of(callback);
+  Reporters & group = group_of(*reporter);
   make_room(group);
-  Bucket * const bucket = bucket_of(callback);
+  Bucket * const bucket = bucket_of(*reporter);
   if (bucket != nullptr) {
-    make_room(bucket->callbacks);
+    make_room(bucket->reporters);
   }
   start();
-  group.push_back(&callback);
+  group.push_back(reporter);
   if (bucket != nullptr) {
-    bucket->callbacks.push_back(&callback);
-    bucket->count.store(bucket->callbacks.size(), std::memory_order_release);
+    bucket->reporters.push_back(reporter);
+    bucket->count.store(bucket->reporters.size(), std::memory_order_release);
   }
-  callback.is_active_ = true;
+  reporter->order_ = ++last_order_;
   ++count_;
   is_any_new_ = true;
-  ++changes_;
   wake_.notify_all();
-  wake_sleep();  // a sleeping thread has neither this callback's watchers nor its due time
+  wake_sleep();  // a sleeping thread has neither this reporter's watchers nor its due time
 }
 
-void CallbackThread::remove(Callback & callback) noexcept {
-  if (!callback.is_active_) {
+void CallbackThread::remove(Reporter & reporter) noexcept {
+  const std::lock_guard running(reporter.mutex());
+  reporter.clear();
+  const std::lock_guard lock(mutex_);
+  if (reporter.order_ == 0) {
     return;
   }
-  erase(group_of(callback), &callback);
-  if (Bucket * const bucket = bucket_of(callback)) {
-    erase(bucket->callbacks, &callback);
-    bucket->count.store(bucket->callbacks.size(), std::memory_order_release);
+  erase(group_of(reporter), reporter);
+  if (Bucket * const bucket = bucket_of(reporter)) {
+    erase(bucket->reporters, reporter);
+    bucket->count.store(bucket->reporters.size(), std::memory_order_release);
   }
-  callback.is_active_ = false;
+  reporter.order_ = 0;
   --count_;
-  ++changes_;
 }
 
-CallbackThread::Callbacks & CallbackThread::group_of(const Callback & callback) noexcept {
-  const Callback::Source & source = callback.source_;
-  return source.topic == nullptr ? events_ : by_mark_[manycore::CallbackMarks::of(source.endpoint)];
+void CallbackThread::make_room(Reporters & reporters) {
+  if (reporters.size() == reporters.capacity()) {
+    reporters.reserve(std::max<size_t>(4, 2 * reporters.size()));
+  }
 }
 
-CallbackThread::Bucket * CallbackThread::bucket_of(const Callback & callback) noexcept {
-  const MessageTopic * const topic = callback.source_.topic;
-  return topic == nullptr ? nullptr : &by_topic_[bucket_of(*topic)];
+CallbackThread::Reporters::const_iterator CallbackThread::beyond(
+  uint64_t order, const Reporters & reporters) noexcept {
+  return std::upper_bound(
+    reporters.begin(), reporters.end(), order,
+    [](uint64_t value, const auto & reporter) { return value < reporter->order_; });
+}
+
+void CallbackThread::erase(Reporters & reporters, const Reporter & reporter) noexcept {
+  reporters.erase(beyond(reporter.order_ - 1, reporters));
+}
+
+CallbackThread::Reporters & CallbackThread::group_of(const Reporter & reporter) noexcept {
+  const Reporter::Source & source = reporter.source();
+  return source.topic ? by_mark_[manycore::CallbackMarks::of(source.endpoint)] : events_;
+}
+
+CallbackThread::Bucket * CallbackThread::bucket_of(const Reporter & reporter) noexcept {
+  const std::optional<MessageTopic> & topic = reporter.source().topic;
+  return topic ? &by_topic_[bucket_of(*topic)] : nullptr;
 }
 
 /// Acquire: the word was taken before the first callback came. Without a callback in sight the
@@ -89,8 +94,7 @@ manycore::WakeSet CallbackThread::spared(const MessageTopic & topic) const noexc
 }
 
 void CallbackThread::report(const MessageTopic & topic) noexcept {
-  const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (!lock || is_calling_ || !report_all_of(topic)) {
+  if (Reporter::is_calling() || !report_all_of(topic)) {
     by_topic_[bucket_of(topic)].is_left = true;
     is_any_left_ = true;
     waiters_.of_word(manycore::callback_word).notify();
@@ -98,10 +102,15 @@ void CallbackThread::report(const MessageTopic & topic) noexcept {
 }
 
 bool CallbackThread::report_all_of(const MessageTopic & topic) {
+  const std::unique_lock turn(turn_, std::try_to_lock);
+  if (!turn) {
+    return false;
+  }
   bool is_done = true;
-  for_each(by_topic_[bucket_of(topic)].callbacks, [&](Callback & callback) {
-    if (*callback.source_.topic == topic && !callback.report_known()) {
-      is_done = false;
+  for_each(by_topic_[bucket_of(topic)].reporters, [&](Reporter & reporter) {
+    if (*reporter.source().topic == topic) {
+      const std::unique_lock lock(reporter.mutex(), std::try_to_lock);
+      is_done = lock && reporter.report_known() && is_done;
     }
   });
   return is_done;
@@ -129,6 +138,20 @@ void CallbackThread::stop() noexcept {
   if (thread_.joinable()) {
     thread_.join();
   }
+  remove_all(events_);  // publishing threads may be calling
+  for (const Reporters & reporters : by_mark_) {
+    remove_all(reporters);
+  }
+}
+
+void CallbackThread::remove_all(const Reporters & reporters) noexcept {
+  std::unique_lock lock(mutex_);
+  while (!reporters.empty()) {
+    const std::shared_ptr<Reporter> last = reporters.back();
+    lock.unlock();
+    remove(*last);
+    lock.lock();
+  }
 }
 
 void CallbackThread::run() noexcept {
@@ -148,18 +171,20 @@ void CallbackThread::run() noexcept {
     if (looks_at_all) {
       watch_all(word);
     }
+    lock.unlock();
     const uint32_t epoch = waiter.epoch();
     manycore::CallbackMarks::Taken marks = manycore::CallbackMarks::everything();
     if (!looks_at_all) {
       marks = waiters_.callback_marks().take();
       marks.events = marks.events || manycore::monotonic_ns() >= due_ns_;
     }
-    report_left();
-    report_marked(marks);
-    const int64_t due_ns = due_ns_;
-    lock.unlock();
+    {
+      const std::lock_guard turn(turn_);
+      report_left();
+      report_marked(marks);
+    }
     waiter.wait(
-      epoch, due_ns == manycore::infinite_ns ? std::nullopt : std::optional<int64_t>(due_ns));
+      epoch, due_ns_ == manycore::infinite_ns ? std::nullopt : std::optional<int64_t>(due_ns_));
     lock.lock();
   }
   sleeping_ = nullptr;
@@ -172,9 +197,9 @@ void CallbackThread::wake_sleep() noexcept {
 }
 
 void CallbackThread::watch_all(uint32_t word) noexcept {
-  const auto watch = [word](const Callbacks & callbacks) {
-    for (Callback * const callback : callbacks) {
-      callback->source_.watchers.add(word);
+  const auto watch = [word](const Reporters & reporters) {
+    for (const std::shared_ptr<Reporter> & reporter : reporters) {
+      reporter->source().watchers.add(word);
     }
   };
   watch(events_);
@@ -183,12 +208,17 @@ void CallbackThread::watch_all(uint32_t word) noexcept {
 
 void CallbackThread::report_marked(const manycore::CallbackMarks::Taken & marks) {
   marks.for_each_mark([this](uint32_t mark) {
-    for_each(by_mark_[mark], [](Callback & callback) { callback.report(); });
+    for_each(by_mark_[mark], [](Reporter & reporter) {
+      const std::lock_guard lock(reporter.mutex());
+      reporter.report();
+    });
   });
   if (marks.events) {
     due_ns_ = manycore::infinite_ns;
-    for_each(
-      events_, [this](Callback & callback) { due_ns_ = std::min(due_ns_, callback.report()); });
+    for_each(events_, [this](Reporter & reporter) {
+      const std::lock_guard lock(reporter.mutex());
+      due_ns_ = std::min(due_ns_, reporter.report());
+    });
   }
 }
 
@@ -198,24 +228,34 @@ void CallbackThread::report_left() {
   }
   for (Bucket & bucket : by_topic_) {
     if (bucket.is_left.exchange(false)) {
-      for_each(bucket.callbacks, [](Callback & callback) { callback.report(); });
+      for_each(bucket.reporters, [](Reporter & reporter) {
+        const std::lock_guard lock(reporter.mutex());
+        reporter.report();
+      });
     }
   }
 }
 
-/// A child of fork() made by a callback goes no further: what has arrived is its parent's.
+std::shared_ptr<Reporter> CallbackThread::next(
+  const Reporters & reporters, uint64_t & order) noexcept {
+  if (is_inherited()) {  // a callback has forked: what has arrived is its parent's
+    return nullptr;
+  }
+  const std::lock_guard lock(mutex_);
+  const auto found = beyond(order, reporters);
+  if (stopping_ || found == reporters.end()) {
+    return nullptr;
+  }
+  order = (*found)->order_;
+  return *found;
+}
+
 template<typename Visit>
-void CallbackThread::for_each(const Callbacks & callbacks, Visit visit) {
-  uint64_t seen;
-  do {
-    seen = changes_;
-    for (size_t i = 0; i < callbacks.size() && changes_ == seen && !stopping_; ++i) {
-      if (side_.is_inherited()) {
-        return;
-      }
-      visit(*callbacks[i]);
-    }
-  } while (changes_ != seen);
+void CallbackThread::for_each(const Reporters & reporters, Visit visit) {
+  uint64_t order = 0;
+  while (const std::shared_ptr<Reporter> reporter = next(reporters, order)) {
+    visit(*reporter);
+  }
 }
 
 }  // namespace rmw_manycore

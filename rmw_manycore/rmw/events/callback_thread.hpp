@@ -5,13 +5,13 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "platform/fork_side.hpp"
-#include "rmw/events/callback.hpp"
+#include "rmw/events/reporter.hpp"
 #include "transport/waiting/waiters.hpp"
 
 namespace rmw_manycore {
@@ -19,6 +19,10 @@ namespace rmw_manycore {
 /// Calls the "on new message / request / response / event" callbacks of one context. Started when
 /// the first callback is set; sleeps on its own wake word, and looks at what is marked when that is
 /// raised. A thread of the context that publishes calls for its message itself. Thread-safe.
+///
+/// A thread that adds or removes a Reporter waits for no other one's function: only the mutex of
+/// the Reporter is held while its function runs, and a mutex that no such thread takes. Locked in
+/// this order: `turn_`, Reporter::mutex(), `mutex_`.
 class CallbackThread {
 public:
   explicit CallbackThread(manycore::Waiters & waiters) noexcept : waiters_(waiters) {}
@@ -36,71 +40,67 @@ public:
   /// Stops the thread; no callback is called afterwards. Must not be called from a callback.
   void stop() noexcept;
 
-private:
-  friend class Callback;
+  /// True in a child of fork(): the thread does not exist there, and mutexes may be locked forever.
+  bool is_inherited() const noexcept { return side_.is_inherited(); }
+  /// Requires the mutex of the Reporter.
+  void add(const std::shared_ptr<Reporter> & reporter);
+  /// Clears the function, too. Waits until it does not run, unless called from it.
+  void remove(Reporter & reporter) noexcept;
 
-  using Callbacks = std::vector<Callback *>;
-  /// Callbacks for messages of topics with the same hash.
+private:
+  /// In the order in which they were added.
+  using Reporters = std::vector<std::shared_ptr<Reporter>>;
+  /// Reporters of topics with the same hash.
   struct Bucket {
-    Callbacks callbacks;
+    Reporters reporters;
     std::atomic<size_t> count{0};
     std::atomic<bool> is_left{false};  ///< to the thread, by report()
   };
-  /// Marks that a callback runs. Requires the mutex.
-  class Calling {
-  public:
-    explicit Calling(CallbackThread & thread) noexcept
-    : thread_(thread), is_nested_(std::exchange(thread.is_calling_, true)) {}
-    ~Calling() { thread_.is_calling_ = is_nested_; }
-    Calling(const Calling &) = delete;
-    Calling & operator=(const Calling &) = delete;
-
-  private:
-    CallbackThread & thread_;
-    const bool is_nested_;
-  };
-
-  void add(Callback & callback);
-  void remove(Callback & callback) noexcept;
+  /// Afterwards one push_back() cannot fail.
+  static void make_room(Reporters & reporters);
+  static Reporters::const_iterator beyond(uint64_t order, const Reporters & reporters) noexcept;
+  static void erase(Reporters & reporters, const Reporter & reporter) noexcept;
   size_t bucket_of(const MessageTopic & topic) const noexcept {
     return topic.hash() % by_topic_.size();
   }
   /// nullptr for events.
-  Bucket * bucket_of(const Callback & callback) noexcept;
+  Bucket * bucket_of(const Reporter & reporter) noexcept;
   /// Those that are looked at together with this one.
-  Callbacks & group_of(const Callback & callback) noexcept;
+  Reporters & group_of(const Reporter & reporter) noexcept;
   void start();
   void run() noexcept;
   void report_marked(const manycore::CallbackMarks::Taken & marks);
   void report_left();  ///< what report() has left
   /// False if more may have arrived, which to find out would wait for another thread.
   bool report_all_of(const MessageTopic & topic);
-  /// Starts over when a callback sets or clears callbacks.
+  /// Includes those that are added meanwhile.
   template<typename Visit>
-  void for_each(const Callbacks & callbacks, Visit visit);
+  void for_each(const Reporters & reporters, Visit visit);
+  /// The first one beyond `order`, which becomes its own. Null at the end, after stop(), and in a
+  /// child of fork().
+  std::shared_ptr<Reporter> next(const Reporters & reporters, uint64_t & order) noexcept;
+  void remove_all(const Reporters & reporters) noexcept;
   void wake_sleep() noexcept;
   void watch_all(uint32_t word) noexcept;
 
   manycore::Waiters & waiters_;
-  /// In a child of fork() the thread does not exist, and the mutex may be locked forever.
   const manycore::ForkSide side_;
-  /// Held while a callback runs, so that none runs after it was cleared. Recursive, because a
-  /// callback may set or clear callbacks.
-  std::recursive_mutex mutex_;
-  std::condition_variable_any wake_;
-  // Active callbacks:
-  Callbacks events_;
-  std::array<Callbacks, manycore::CallbackMarks::count> by_mark_;  ///< of messages
+  /// Held by the one thread that looks for arrivals and calls, so that functions that destroy each
+  /// other's entities do not run at the same time.
+  std::mutex turn_;
+  std::mutex mutex_;  ///< guards what follows, to `stopping_`
+  std::condition_variable wake_;
+  Reporters events_;
+  std::array<Reporters, manycore::CallbackMarks::count> by_mark_;  ///< of messages
   std::array<Bucket, 256> by_topic_;                               ///< the same again
   size_t count_ = 0;
-  uint64_t changes_ = 0;     ///< of these lists
-  bool is_any_new_ = false;  ///< not yet seen by the thread
-  std::atomic<bool> is_any_left_{false};
-  /// When the passage of time may raise the count of an event.
-  int64_t due_ns_ = manycore::infinite_ns;
+  uint64_t last_order_ = 0;
+  bool is_any_new_ = false;                ///< not yet seen by the thread
   manycore::Waiter * sleeping_ = nullptr;  ///< the waiter of the thread while it runs
-  bool is_calling_ = false;
   bool stopping_ = false;
+  std::atomic<bool> is_any_left_{false};
+  /// When the passage of time may raise the count of an event. Of the thread.
+  int64_t due_ns_ = manycore::infinite_ns;
   /// One context of a process has it. Set before the first callback is in `by_topic_`.
   bool has_callback_word_ = false;
   std::thread thread_;

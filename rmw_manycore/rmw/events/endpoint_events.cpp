@@ -33,11 +33,11 @@ Callback & EndpointEvents::callback(rmw_event_type_t type) {
   const std::lock_guard lock(mutex_);
   if (!callbacks_[type]) {
     callbacks_[type] = std::make_unique<Callback>(
-      thread_, Callback::Source{
+      thread_, Reporter::Source{
                  thread_.waiters().event_watchers(),
                  [this, type] {
                    const EventCounts now = counts(type);
-                   return Callback::Arrivals{now.changes, now.next_due_ns};
+                   return Reporter::Arrivals{now.changes, now.next_due_ns};
                  },
                  [this, type] { return untold(type); }});
   }

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "rmw/event.h"
+#include "rmw/events/callback.hpp"
 #include "rmw/events/callback_thread.hpp"
 #include "rmw/events/event_counts.hpp"
 

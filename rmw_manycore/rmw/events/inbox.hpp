@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "rmw/events/callback.hpp"
 #include "rmw/events/callback_thread.hpp"
 #include "rmw/serialization/cdr.hpp"
 #include "transport/subscription/subscription.hpp"
@@ -18,12 +19,11 @@ public:
     std::unique_ptr<manycore::Subscription> subscription, MessageTopic topic,
     CallbackThread & thread)
   : subscription_(std::move(subscription)),
-    topic_(std::move(topic)),
     watched_(thread.waiters(), subscription_->watchers()),
     on_arrival_(
       thread,
-      {watched_.watchers(), [this] { return Callback::Arrivals{subscription_->arrivals()}; },
-       [this] { return unread(); }, &topic_,
+      {watched_.watchers(), [this] { return Reporter::Arrivals{subscription_->arrivals()}; },
+       [this] { return unread(); }, std::move(topic),
        static_cast<uint32_t>(manycore::endpoint_in(subscription_->gid())),
        [this] { return known(); }}) {
     watched_.watchers().reset();  // waiting threads add their own words
@@ -45,7 +45,7 @@ private:
   void warn_of_drop(size_t size, const char * reason) noexcept;
 
   /// The count is read first: a resync that is requested later wakes the callback thread.
-  Callback::Known known() const noexcept {
+  Reporter::Known known() const noexcept {
     const uint64_t count = subscription_->announced();
     return {count, !subscription_->has_to_resync()};
   }
@@ -53,7 +53,6 @@ private:
   uint64_t unread() const;
 
   std::unique_ptr<manycore::Subscription> subscription_;
-  const MessageTopic topic_;
   manycore::Watched watched_;
   Callback on_arrival_;
   std::atomic<int64_t> next_warning_ns_{0};  ///< CLOCK_MONOTONIC
