@@ -24,6 +24,17 @@ rmw_ret_t code_of(manycore::ErrorCode code) noexcept {
 
 }  // namespace
 
+void check(rmw_ret_t code) {
+  if (code == RMW_RET_OK) {
+    return;
+  }
+  if (!rmw_error_is_set()) {
+    RMW_SET_ERROR_MSG(
+      code == RMW_RET_BAD_ALLOC ? "out of memory" : "a helper function of rmw has failed");
+  }
+  throw RmwError(code);
+}
+
 rmw_ret_t report_exception() noexcept {
   try {
     throw;

@@ -34,7 +34,7 @@ auto guarded_handle(Body && body) noexcept -> decltype(body()) {
   }
 }
 
-/// Failure of a function of rmw's helper library, which has already set the error state.
+/// Failure of a function of rmw's helper library. The error state is set.
 class RmwError {
 public:
   explicit RmwError(rmw_ret_t code) : code_(code) {}
@@ -44,11 +44,8 @@ private:
   rmw_ret_t code_;
 };
 
-/// Throws RmwError unless `code` is RMW_RET_OK. The error state is already set.
-inline void check(rmw_ret_t code) {
-  if (code != RMW_RET_OK) {
-    throw RmwError(code);
-  }
-}
+/// Throws RmwError unless `code` is RMW_RET_OK. Sets the error state if the helper library has not,
+/// as after some failed allocations.
+void check(rmw_ret_t code);
 
 }  // namespace rmw_manycore

@@ -4,6 +4,7 @@
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
 #include "rmw/rmw.h"
+#include "rmw/serialization/serialized_message.hpp"
 #include "rmw/serialization/type_support.hpp"
 
 rmw_ret_t rmw_serialize(
@@ -18,9 +19,7 @@ rmw_ret_t rmw_serialize(
   return rmw_manycore::guarded([&] {
     const rmw_manycore::Cdr cdr = rmw_manycore::cdr_of(type_support);
     const size_t bound = cdr.size_bound(ros_message);
-    if (serialized_message->buffer_capacity < bound) {
-      rmw_manycore::check(rmw_serialized_message_resize(serialized_message, bound));
-    }
+    rmw_manycore::make_room(*serialized_message, bound);
     const size_t size = cdr.serialize(ros_message, serialized_message->buffer, bound);
     // The length includes the rounding, as in rmw_fastrtps_cpp.
     std::memset(serialized_message->buffer + size, 0, bound - size);

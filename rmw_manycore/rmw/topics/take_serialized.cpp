@@ -5,6 +5,7 @@
 #include "rmw/common/error.hpp"
 #include "rmw/common/tracepoints.hpp"
 #include "rmw/rmw.h"
+#include "rmw/serialization/serialized_message.hpp"
 #include "rmw/topics/message_info.hpp"
 #include "rmw/topics/subscription.hpp"
 
@@ -15,17 +16,20 @@ namespace {
 /// bytes.
 constexpr size_t word_bytes = 4;
 
-/// `info` may be null.
+/// A message for which the caller has no room counts as lost. `info` may be null.
 bool copy_next(
   Subscription & subscription, rmw_serialized_message_t & message, rmw_message_info_t * info) {
-  const std::optional<manycore::Claim> claim = subscription.inbox().claim();
+  std::optional<manycore::Claim> claim = subscription.inbox().claim();
   if (!claim) {
     return false;
   }
   const size_t size = claim->size();
   const size_t padded = (size + word_bytes - 1) / word_bytes * word_bytes;
-  if (message.buffer_capacity < padded) {
-    check(rmw_serialized_message_resize(&message, padded));
+  try {
+    make_room(message, padded);
+  } catch (...) {
+    claim->reject();
+    throw;
   }
   if (size != 0) {
     std::memcpy(message.buffer, claim->data(), size);

@@ -1,0 +1,119 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Buffers and allocators that a caller of the C interface passes."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import Any
+
+import pytest
+from c_support import rcutils, rmw, rmw_handle
+from ros_support import lost_messages
+from std_msgs.msg import String
+from support import IS_MANYCORE
+
+OK, ERROR, BAD_ALLOC = 0, 1, 10
+
+_ALLOCATE = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+_FREE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
+_RESIZE = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+_ZEROED = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_void_p)
+
+libc = ctypes.CDLL(None)
+for name in ("malloc", "calloc", "realloc"):
+    getattr(libc, name).restype = ctypes.c_void_p
+rcutils.rcutils_error_is_set.restype = ctypes.c_bool
+
+
+class Allocator(ctypes.Structure):
+    """rcutils_allocator_t that fails after some allocations."""
+
+    _fields_ = (
+        ("allocate", _ALLOCATE),
+        ("free", _FREE),
+        ("resize", _RESIZE),
+        ("zeroed", _ZEROED),
+        ("state", ctypes.c_void_p),
+    )
+
+    def __init__(self, allocations: int = 0) -> None:
+        self.left = allocations
+
+        def grant(function: Any, *arguments: Any) -> Any:
+            self.left -= 1
+            return function(*map(ctypes.c_size_t, arguments)) if self.left >= 0 else None
+
+        super().__init__(
+            _ALLOCATE(lambda size, _: grant(libc.malloc, size)),
+            _FREE(lambda pointer, _: libc.free(ctypes.c_void_p(pointer))),
+            _RESIZE(lambda pointer, size, _: grant(libc.realloc, pointer or 0, size)),
+            _ZEROED(lambda count, size, _: grant(libc.calloc, count, size)),
+        )
+
+
+class Bytes(ctypes.Structure):
+    """rmw_serialized_message_t."""
+
+    _fields_ = (
+        ("buffer", ctypes.POINTER(ctypes.c_uint8)),
+        ("length", ctypes.c_size_t),
+        ("capacity", ctypes.c_size_t),
+        ("allocator", Allocator),
+    )
+
+
+def failed(code: int) -> int:
+    """Return the code, after a check that the error state is set if and only if it is an error."""
+    is_set = rcutils.rcutils_error_is_set()
+    rcutils.rcutils_reset_error()
+    assert is_set == (code != OK)
+    return code
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS loses it uncounted")
+@pytest.mark.parametrize(
+    ("message", "code"),
+    [(Bytes(allocator=Allocator()), BAD_ALLOC), (Bytes(), ERROR)],
+    ids=["allocation_fails", "no_allocator"],
+)
+def test_a_message_that_does_not_fit_into_the_buffer_counts_as_lost(node, message, code):
+    publisher = node.create_publisher(String, "points", 10)
+    subscription = rmw_handle("subscription", node.create_subscription(String, "points", print, 10))
+    taken = ctypes.c_bool(True)
+
+    def take(buffer: Bytes) -> int:
+        arguments = (ctypes.byref(buffer), ctypes.byref(taken), None)
+        return failed(rmw.rmw_take_serialized_message(subscription, *arguments))
+
+    publisher.publish(String(data="first"))
+    publisher.publish(String(data="second"))
+    assert take(message) == code
+    assert not taken
+    assert lost_messages("/points") == 1
+    room = (ctypes.c_uint8 * 100)()
+    enough = Bytes(buffer=room, capacity=len(room))
+    assert take(enough) == OK
+    assert b"second" in bytes(room)
+    assert take(enough) == OK
+    assert not taken
+
+
+class Endpoints(ctypes.Structure):
+    """rmw_topic_endpoint_info_array_t."""
+
+    _fields_ = (("size", ctypes.c_size_t), ("info", ctypes.c_void_p))
+
+
+def test_each_failed_allocation_is_reported(node):
+    node.create_publisher(String, "points", 10)
+    handle = rmw_handle("node", node)
+    codes = []
+    while OK not in codes:
+        found, allocator = Endpoints(), Allocator(len(codes))
+        arguments = (ctypes.byref(allocator), b"/points", False, ctypes.byref(found))
+        codes.append(failed(rmw.rmw_get_publishers_info_by_topic(handle, *arguments)))
+    assert found.size == 1
+    assert codes == [BAD_ALLOC] * (len(codes) - 1) + [OK]
+    assert len(codes) > 3
+    end = rmw.rmw_topic_endpoint_info_array_fini
+    assert end(ctypes.byref(found), ctypes.byref(allocator)) == OK
