@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import ctypes
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -30,12 +32,31 @@ def rmw_handle(kind: str, entity: Any) -> ctypes.c_void_p:
 
 
 def type_support(message_type: Any) -> ctypes.c_void_p:
+    return ctypes.c_void_p(_pointer_of(message_type, "_TYPE_SUPPORT"))
+
+
+@contextmanager
+def c_message(message: Any) -> Iterator[ctypes.c_void_p]:
+    """Yield a copy of a message as C has it."""
+    kind = type(message)
+    create = ctypes.CFUNCTYPE(ctypes.c_void_p)(_pointer_of(kind, "_CREATE_ROS_MESSAGE"))
+    destroy = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(_pointer_of(kind, "_DESTROY_ROS_MESSAGE"))
+    convert = ctypes.PYFUNCTYPE(ctypes.c_bool, ctypes.py_object, ctypes.c_void_p)(
+        _pointer_of(kind, "_CONVERT_FROM_PY")
+    )
+    copy = create()
+    assert convert(message, copy)
+    yield ctypes.c_void_p(copy)
+    destroy(copy)
+
+
+def _pointer_of(message_type: Any, capsule: str) -> int:
     get_pointer = ctypes.pythonapi.PyCapsule_GetPointer
     get_pointer.restype = ctypes.c_void_p
     get_pointer.argtypes = [ctypes.py_object, ctypes.c_char_p]
     if message_type.__class__._TYPE_SUPPORT is None:
         message_type.__class__.__import_type_support__()
-    return ctypes.c_void_p(get_pointer(message_type.__class__._TYPE_SUPPORT, None))
+    return int(get_pointer(getattr(message_type.__class__, capsule), None))
 
 
 class _Sequence(ctypes.Structure):

@@ -131,12 +131,13 @@ bool fast_dds_accepts(const FastDds & fast_dds, const MessageType & type, const 
   return accepted;
 }
 
-/// Both reasons concern bytes that no ROS 2 writer sends. XCDR version 2: Fast DDS never matches
+/// These reasons concern bytes that no ROS 2 writer sends. XCDR version 2: Fast DDS never matches
 /// such writers. A length that is too large: the type support ignores that a nested part has
-/// failed, and delivers what it has.
+/// failed, and delivers what it has. Broken UTF-16: Fast DDS leaves it to the reader.
 bool is_refused_by_us_alone(const std::string & reason) {
   return reason.find("a length in it claims more bytes than are left") != std::string::npos ||
-         reason.find("it is not XCDR version 1") != std::string::npos;
+         reason.find("it is not XCDR version 1") != std::string::npos ||
+         reason.find("a wide string in it is not UTF-16") != std::string::npos;
 }
 
 /// One message type in one language.

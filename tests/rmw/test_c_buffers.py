@@ -7,10 +7,15 @@ import ctypes
 from typing import Any
 
 import pytest
-from c_support import rcutils, rmw, rmw_handle
-from ros_support import lost_messages
-from std_msgs.msg import String
+from c_support import c_message, rcutils, rmw, rmw_handle, type_support
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Path
+from rclpy.serialization import deserialize_message, serialize_message
+from ros_support import lost_messages, spin_until
+from sensor_msgs.msg import JointState, PointCloud2, PointField
+from std_msgs.msg import Header, String
 from support import IS_MANYCORE
+from test_msgs.msg import BasicTypes, MultiNested, Strings, UnboundedSequences, WStrings
 
 OK, ERROR, BAD_ALLOC = 0, 1, 10
 
@@ -117,3 +122,61 @@ def test_each_failed_allocation_is_reported(node):
     assert len(codes) > 3
     end = rmw.rmw_topic_endpoint_info_array_fini
     assert end(ctypes.byref(found), ctypes.byref(allocator)) == OK
+
+
+def path(count: int) -> Path:
+    header = Header(frame_id="abc")
+    return Path(header=header, poses=[PoseStamped(header=header) for _ in range(count)])
+
+
+def cloud(size: int) -> PointCloud2:
+    fields = [PointField(name="a" * i, datatype=2) for i in range(9)]
+    return PointCloud2(fields=fields, data=bytes(size), is_dense=True)
+
+
+PADDED = {
+    "numbers": BasicTypes(bool_value=True, float64_value=1.0),
+    "strings": Strings(string_value="abc"),
+    "wide_strings": WStrings(wstring_value="abc", unbounded_sequence_of_wstrings=["a", "bc"]),
+    "large_numbers": UnboundedSequences(bool_values=[True] * 1001, float64_values=[1.0] * 1000),
+    "large_nested": MultiNested(),
+    "large_strings": JointState(name=["abc"] * 301, position=[1.0] * 301),
+    "large_wide_strings": WStrings(unbounded_sequence_of_wstrings=["abc", "d"] * 100),
+    "large_messages": path(100),
+    "large_bytes": cloud(10_001),
+}
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS leaves what was there")
+@pytest.mark.parametrize("case", PADDED)
+def test_padding_is_zero(case):
+    """Otherwise bytes of the process would go to recordings, and to the network."""
+    message = PADDED[case]
+
+    def serialized_over(byte: int) -> bytes:
+        room = (ctypes.c_uint8 * 100_000)(*[byte] * 100_000)
+        buffer = Bytes(buffer=room, capacity=len(room))
+        with c_message(message) as pointer:
+            support = type_support(type(message))
+            assert rmw.rmw_serialize(pointer, support, ctypes.byref(buffer)) == OK
+        return bytes(room[: buffer.length])
+
+    assert (len(serialized_over(0)) > 1024) == case.startswith("large")
+    assert serialized_over(0xAA) == serialized_over(0x55)
+    assert deserialize_message(serialized_over(0xAA), type(message)) == message
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS leaves what was there")
+@pytest.mark.parametrize("case", PADDED)
+def test_padding_of_published_messages_is_zero(node, case):
+    message = PADDED[case]
+    received: list[bytes] = []
+    node.create_subscription(type(message), "padded", received.append, 1, raw=True)
+    publisher = node.create_publisher(type(message), "padded", 1)
+    former = b"\xaa" * len(serialize_message(message))
+    for _ in range(100):  # fills the memory of the topic
+        publisher.publish(former)
+    publisher.publish(message)
+    spin_until(node, lambda: received)
+    # Their lengths are rounded up differently.
+    assert received[0].rstrip(b"\0") == serialize_message(message).rstrip(b"\0")

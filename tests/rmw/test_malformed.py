@@ -49,6 +49,18 @@ BROKEN = {
     "end": (Point(), bytes(8), b""),
 }
 
+FIRST, SECOND = b"\x3d\xd8\0\0", b"\x00\xde\0\0"  # surrogates of a smiley
+SMILEY = WStrings(wstring_value="\N{GRINNING FACE}")
+TEXTS = {
+    "first_surrogate_alone": (SMILEY, SECOND, b"x\0\0\0"),
+    "second_surrogate_alone": (SMILEY, FIRST, b"x\0\0\0"),
+    "surrogates_swapped": (SMILEY, FIRST + SECOND, SECOND + FIRST),
+    "text_ends_within_a_pair": (SMILEY, FIRST + SECOND, b"x\0\0\0" + FIRST),
+    "byte_order_mark_swapped": (SMILEY, FIRST + SECOND, b"\xfe\xff\0\0" + b"\x00\xd8\0\0"),
+}
+if IS_MANYCORE:  # Fast DDS hands them out, and rclpy raises
+    BROKEN |= TEXTS
+
 
 def broken(case: str) -> tuple[Any, bytes]:
     """Return a message and its broken CDR."""
@@ -102,6 +114,15 @@ def test_lengths_are_compared_with_what_is_left_before_memory_is_asked_for(node,
     message, cdr = broken(case)
     with pytest.raises(RMWError, match="claims more bytes than are left"):
         deserialize_message(cdr, type(message))
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="its message is not of ours")
+@pytest.mark.parametrize("case", TEXTS)
+def test_wide_strings_are_utf16(node, case):
+    message, cdr = broken(case)
+    with pytest.raises(RMWError, match="a wide string in it is not UTF-16"):
+        deserialize_message(cdr, type(message))
+    assert deserialize_message(serialize_message(message), type(message)) == message
 
 
 @pytest.mark.parametrize("big", [False, True], ids=["little_endian", "big_endian"])

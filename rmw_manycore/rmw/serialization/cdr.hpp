@@ -25,13 +25,15 @@ public:
   /// allocations, no padding of its own), else 0.
   size_t plain_bytes() const noexcept { return plain_bytes_; }
 
-  /// Returns the number of bytes written. Throws manycore::Error or a Fast CDR exception.
+  /// Returns the number of bytes written, padding included. Throws manycore::Error.
   size_t serialize(const void * message, uint8_t * data, size_t capacity) const;
 
-  /// Throws manycore::Error or a Fast CDR exception; `message` is then unspecified.
+  /// Throws std::bad_alloc or manycore::Error; `message` is then unspecified.
   void deserialize(const uint8_t * data, size_t size, void * message) const;
 
 private:
+  size_t write(const void * message, uint8_t * data, size_t capacity) const;
+  void read(const uint8_t * data, size_t size, void * message) const;
   /// Reason to reject the data, or null if the type support may read it.
   const char * why_unreadable(const uint8_t * data, size_t size) const;
 

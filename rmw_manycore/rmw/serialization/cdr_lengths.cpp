@@ -25,10 +25,20 @@ constexpr bool is_little_endian = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__;
 
 }  // namespace
 
-bool CdrLengths::fit(const uint8_t * cdr, size_t size) const {
-  std::call_once(looked_, [this] { plan_ = make_plan(); });
+const char * CdrLengths::find_fault(const uint8_t * cdr, size_t size) const {
   const bool swapped = ((cdr[1] & little_endian_bit) != 0) != is_little_endian;
-  return plan_.fits(cdr + encapsulation_bytes, size - encapsulation_bytes, swapped);
+  return plan().find_fault(cdr + encapsulation_bytes, size - encapsulation_bytes, swapped);
+}
+
+bool CdrLengths::know_padding() const { return plan().is_whole(); }
+
+void CdrLengths::clear_padding(uint8_t * cdr, size_t size) const {
+  plan().clear_padding(cdr + encapsulation_bytes, size - encapsulation_bytes);
+}
+
+const LengthPlan & CdrLengths::plan() const {
+  std::call_once(looked_, [this] { plan_ = make_plan(); });
+  return plan_;
 }
 
 LengthPlan CdrLengths::make_plan() const {

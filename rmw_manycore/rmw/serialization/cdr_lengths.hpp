@@ -16,7 +16,7 @@ constexpr size_t encapsulation_bytes = 4;
 /// Checks the lengths in a message's CDR against the remaining bytes. The generated type support
 /// resizes a wide string before reading it, assumes one byte per element whatever its size, and
 /// continues after a nested message has failed, so a few bytes from the network could claim
-/// gigabytes. Thread-safe.
+/// gigabytes. Also clears padding, which Fast CDR skips without writing it. Thread-safe.
 class CdrLengths {
 public:
   explicit CdrLengths(const rosidl_message_type_support_t & message) noexcept
@@ -26,13 +26,18 @@ public:
   CdrLengths(const rosidl_service_type_support_t & service, Part part) noexcept
   : service_(&service), part_(part) {}
 
-  /// False if a length exceeds the remaining bytes. Requires CDR version 1 with encapsulation
-  /// header.
-  bool fit(const uint8_t * cdr, size_t size) const;
+  /// What is wrong, as of LengthPlan, or null. Requires CDR version 1 with encapsulation header.
+  const char * find_fault(const uint8_t * cdr, size_t size) const;
+
+  /// Whether the type is known well enough for clear_padding().
+  bool know_padding() const;
+  /// Clears the padding of a message that this process serialized.
+  void clear_padding(uint8_t * cdr, size_t size) const;
 
 private:
-  /// Called for the first message, because it loads the introspection library, which a publisher
-  /// never needs. For a type without introspection nothing is checked.
+  /// Made for the first message, because it loads the introspection library, which a publisher of
+  /// small messages never needs. For a type without introspection nothing is checked.
+  const LengthPlan & plan() const;
   LengthPlan make_plan() const;
   template<typename Members, typename ServiceMembers>
   const Members * find(const char * identifier) const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include "rosidl_typesupport_introspection_c/field_types.h"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr size_t length_bytes = 4;
 constexpr size_t wide_character_bytes = 4;
+constexpr uint32_t swapped_byte_order_mark = 0xFFFE;
 
 /// Type ids are equal in C and C++. 0 for types that are not primitive or not defined in CDR.
 constexpr size_t primitive_bytes(uint8_t type_id) noexcept {
@@ -54,6 +56,7 @@ public:
     }
     return plan;
   }
+  bool is_at_unknown() const noexcept { return is_at_unknown_; }
 
 private:
   using Step = LengthPlan::Step;
@@ -75,7 +78,7 @@ private:
       plan.add({Kind::wide_string, is_sequence, count, 1, length_bytes, nullptr});
     } else {
       is_at_unknown_ = true;
-      plan.add({Kind::passed_over, is_sequence, 0, 1, 1, nullptr});
+      plan.add({Kind::unknown, is_sequence, 0, 1, 1, nullptr});
     }
   }
   void add_messages(LengthPlan & plan, LengthPlan part, bool is_sequence, size_t count) {
@@ -83,7 +86,7 @@ private:
     if (part.is_one_block()) {
       plan.add({Kind::fixed, is_sequence, count, part.steps_[0].alignment, bytes, nullptr});
     } else if (is_sequence || count != 1) {
-      const Kind kind = is_at_unknown_ ? Kind::passed_over : Kind::messages;
+      const Kind kind = is_at_unknown_ ? Kind::unknown : Kind::messages;
       auto shared = std::make_shared<const LengthPlan>(std::move(part));
       plan.add({kind, is_sequence, count, 1, bytes, std::move(shared)});
     } else {
@@ -98,8 +101,10 @@ private:
 
 template<typename Members>
 LengthPlan LengthPlan::of(const Members & type) {
-  LengthPlan plan = LengthPlanner<Members>().plan(type);
-  plan.end_at_last_length();
+  LengthPlanner<Members> planner;
+  LengthPlan plan = planner.plan(type);
+  plan.is_whole_ = !planner.is_at_unknown();
+  plan.find_last_length();
   return plan;
 }
 
@@ -141,38 +146,52 @@ void LengthPlan::add(Step step) {
 }
 
 /// Fast CDR itself checks the lengths of strings, and that enough bytes remain.
-void LengthPlan::end_at_last_length() {
-  while (!steps_.empty() && !reserves(steps_.back())) {
-    steps_.pop_back();
+void LengthPlan::find_last_length() {
+  steps_to_check_ = steps_.size();
+  while (steps_to_check_ != 0 && !reserves(steps_[steps_to_check_ - 1])) {
+    --steps_to_check_;
   }
-  if (steps_.empty()) {
-    return;
-  }
-  Step & last = steps_.back();
-  const bool reserves_inside =
-    last.kind == Step::Kind::wide_string || (last.part != nullptr && last.part->reserves());
-  if (!reserves_inside) {
-    last.kind = Step::Kind::passed_over;
+  if (steps_to_check_ != 0) {
+    const Step & last = steps_[steps_to_check_ - 1];
+    ends_with_number_ =
+      last.kind != Step::Kind::wide_string && (last.part == nullptr || !last.part->reserves());
   }
 }
 
-/// Follows a plan through the CDR of one message. Read-only.
-class LengthWalk {
+/// Follows a plan through the CDR of one message. Clears the padding if `Byte` is not const.
+template<typename Byte>
+class CdrWalk {
 public:
-  LengthWalk(const uint8_t * data, size_t size, bool swapped) noexcept
+  CdrWalk(Byte * data, size_t size, bool swapped) noexcept
   : data_(data), size_(size), swapped_(swapped) {}
 
-  bool fits(const LengthPlan & plan) noexcept {
+  /// Up to the last length.
+  bool check(const LengthPlan & plan) noexcept {
+    for (size_t i = 0; i < plan.steps_to_check_; ++i) {
+      const bool is_number = plan.ends_with_number_ && i + 1 == plan.steps_to_check_;
+      const Step & step = plan.steps_[i];
+      size_t count = step.count;
+      if (!number(step, count) || !(is_number || elements(step, count))) {
+        return false;
+      }
+    }
+    return true;
+  }
+  bool follow(const LengthPlan & plan) noexcept {
     return std::all_of(plan.steps_.begin(), plan.steps_.end(), [this](const Step & step) {
       size_t count = step.count;
-      return (!step.is_sequence || (length(count) && count <= left() / step.bytes)) &&
-             elements(step, count);
+      return number(step, count) && elements(step, count);
     });
   }
+  bool has_met_broken_text() const noexcept { return has_met_broken_text_; }
 
 private:
   using Step = LengthPlan::Step;
+  static constexpr bool clears = !std::is_const_v<Byte>;
 
+  bool number(const Step & step, size_t & count) noexcept {
+    return !step.is_sequence || (length(count) && count <= left() / step.bytes);
+  }
   bool elements(const Step & step, size_t count) noexcept {
     switch (step.kind) {
       case Step::Kind::fixed:
@@ -182,11 +201,11 @@ private:
       case Step::Kind::wide_string:
         return strings(wide_character_bytes, count);
       case Step::Kind::messages:
-        while (count != 0 && fits(*step.part)) {
+        while (count != 0 && follow(*step.part)) {
           --count;
         }
         return count == 0;
-      case Step::Kind::passed_over:
+      case Step::Kind::unknown:
         break;
     }
     return true;
@@ -196,8 +215,28 @@ private:
       if (!length(characters) || !skip(characters * character_bytes)) {
         return false;
       }
+      if (!clears && character_bytes == wide_character_bytes && !is_utf16(characters)) {
+        has_met_broken_text_ = true;
+        return false;
+      }
     }
     return true;
+  }
+  /// Of the characters just skipped. Python would raise, instead of converting, for a surrogate
+  /// without its pair. It would swap the bytes of a text that starts with a swapped byte order
+  /// mark.
+  bool is_utf16(size_t characters) const noexcept {
+    const size_t begin = at_ - characters * wide_character_bytes;
+    bool is_second_due = false;
+    for (size_t i = 0; i < characters; ++i) {
+      const uint32_t character = word(begin + i * wide_character_bytes);
+      const bool is_second = character >= 0xDC00 && character <= 0xDFFF;
+      if (is_second != is_second_due || (i == 0 && character == swapped_byte_order_mark)) {
+        return false;
+      }
+      is_second_due = character >= 0xD800 && character <= 0xDBFF;
+    }
+    return !is_second_due;
   }
 
   size_t left() const noexcept { return size_ - at_; }
@@ -208,25 +247,47 @@ private:
     at_ += bytes;
     return true;
   }
-  bool align(size_t bytes) noexcept { return skip(-at_ & (bytes - 1)); }
+  bool align(size_t bytes) noexcept {
+    const size_t padding = -at_ & (bytes - 1);
+    if (!skip(padding)) {
+      return false;
+    }
+    if constexpr (clears) {
+      std::fill_n(data_ + at_ - padding, padding, Byte{0});
+    }
+    return true;
+  }
   bool length(size_t & result) noexcept {
     if (!align(length_bytes) || left() < length_bytes) {
       return false;
     }
-    uint32_t value = 0;
-    std::memcpy(&value, data_ + at_, length_bytes);
-    result = swapped_ ? __builtin_bswap32(value) : value;
+    result = word(at_);
     return skip(length_bytes);
   }
+  uint32_t word(size_t at) const noexcept {
+    uint32_t value = 0;
+    std::memcpy(&value, data_ + at, sizeof(value));
+    return swapped_ ? __builtin_bswap32(value) : value;
+  }
 
-  const uint8_t * data_;
+  Byte * data_;
   size_t size_;
   size_t at_ = 0;
   bool swapped_;
+  bool has_met_broken_text_ = false;
 };
 
-bool LengthPlan::fits(const uint8_t * data, size_t size, bool swapped) const {
-  return LengthWalk(data, size, swapped).fits(*this);
+const char * LengthPlan::find_fault(const uint8_t * data, size_t size, bool swapped) const {
+  CdrWalk<const uint8_t> walk(data, size, swapped);
+  if (walk.check(*this)) {
+    return nullptr;
+  }
+  return walk.has_met_broken_text() ? "a wide string in it is not UTF-16"
+                                    : "a length in it claims more bytes than are left";
+}
+
+void LengthPlan::clear_padding(uint8_t * data, size_t size) const {
+  CdrWalk<uint8_t>(data, size, false).follow(*this);
 }
 
 }  // namespace rmw_manycore

@@ -8,20 +8,27 @@
 
 namespace rmw_manycore {
 
-/// Positions of the lengths in the CDR of a type's messages, computed once per type. Members of
-/// fixed size in between are skipped in one step, and nothing is checked after the last length.
+/// Positions of the lengths and of the padding in the CDR of a type's messages, computed once per
+/// type. Members of fixed size in between are skipped in one step.
 class LengthPlan {
 public:
   /// `Members` describes the fields of a type by introspection, in C or C++.
   template<typename Members>
   static LengthPlan of(const Members & type);
 
-  /// False if a length claims more elements or characters than the remaining bytes can hold. `data`
-  /// starts after the encapsulation header; `swapped` means the opposite byte order.
-  bool fits(const uint8_t * data, size_t size, bool swapped) const;
+  /// What is wrong, or null: a length claims more elements or characters than the remaining bytes
+  /// can hold, or a wide string is not UTF-16. `data` starts after the encapsulation header;
+  /// `swapped` means the opposite byte order. Does not look beyond the last length.
+  const char * find_fault(const uint8_t * data, size_t size, bool swapped) const;
+
+  /// True if the positions of all members are known.
+  bool is_whole() const noexcept { return is_whole_; }
+  /// Clears the padding of a message in this machine's byte order. Requires is_whole().
+  void clear_padding(uint8_t * data, size_t size) const;
 
 private:
-  friend class LengthWalk;
+  template<typename Byte>
+  friend class CdrWalk;
   template<typename Members>
   friend class LengthPlanner;
 
@@ -31,7 +38,7 @@ private:
       string,       ///< length, characters
       wide_string,  ///< length, characters of four bytes
       messages,     ///< nested messages, described by `part`
-      passed_over,  ///< only their number is checked: no length that reserves memory follows
+      unknown,      ///< of unknown size, as is what follows
     };
     Kind kind;
     bool is_sequence;  ///< the number of elements is in the CDR
@@ -50,9 +57,13 @@ private:
     return steps_.size() == 1 && steps_[0].kind == Step::Kind::fixed && !steps_[0].is_sequence;
   }
   void add(Step step);
-  void end_at_last_length();
+  void find_last_length();
 
   std::vector<Step> steps_;
+  size_t steps_to_check_ = 0;  ///< no length that reserves memory follows
+  /// Of the last one of them only the number of elements is checked.
+  bool ends_with_number_ = false;
+  bool is_whole_ = false;
 };
 
 }  // namespace rmw_manycore
