@@ -11,17 +11,17 @@
 namespace rmw_manycore {
 namespace {
 
-bool is_of_publisher(rmw_event_type_t type) noexcept {
-  return type >= RMW_EVENT_LIVELINESS_LOST && type < RMW_EVENT_INVALID;
-}
-
 rmw_ret_t initialize(
   rmw_event_t * event, EndpointEvents & events, rmw_event_type_t type, bool of_publisher) {
-  if (!rmw_event_type_is_supported(type) || is_of_publisher(type) != of_publisher) {
+  if (!(of_publisher ? contains(publisher_events, type) : contains(subscription_events, type))) {
     RMW_SET_ERROR_MSG_WITH_FORMAT_STRING(
       "event type %d is not supported by rmw_manycore on a %s", static_cast<int>(type),
       of_publisher ? "publisher" : "subscription");
     return RMW_RET_UNSUPPORTED;
+  }
+  if (event->implementation_identifier != nullptr) {
+    RMW_SET_ERROR_MSG("expected a zero-initialized event");
+    return RMW_RET_INVALID_ARGUMENT;
   }
   event->implementation_identifier = identifier;
   event->data = &events;
@@ -35,7 +35,8 @@ rmw_ret_t initialize(
 using rmw_manycore::EndpointEvents;
 
 bool rmw_event_type_is_supported(rmw_event_type_t rmw_event_type) {
-  return rmw_event_type >= RMW_EVENT_LIVELINESS_CHANGED && rmw_event_type < RMW_EVENT_INVALID;
+  return rmw_manycore::contains(rmw_manycore::subscription_events, rmw_event_type) ||
+         rmw_manycore::contains(rmw_manycore::publisher_events, rmw_event_type);
 }
 
 rmw_ret_t rmw_publisher_event_init(

@@ -16,6 +16,7 @@ from ros_support import spin_until
 from std_srvs.srv import Trigger
 from support import IS_MANYCORE
 
+OK, INVALID_ARGUMENT = 0, 11
 POINT_BYTES = 24  # three doubles in memory, and behind four bytes of header in CDR
 
 
@@ -31,6 +32,16 @@ class Bytes(ctypes.Structure):
         ("length", ctypes.c_size_t),
         ("capacity", ctypes.c_size_t),
         ("allocator", Allocator),
+    )
+
+
+class Event(ctypes.Structure):
+    """rmw_event_t."""
+
+    _fields_ = (
+        ("identifier", ctypes.c_char_p),
+        ("data", ctypes.c_void_p),
+        ("type", ctypes.c_int),
     )
 
 
@@ -119,6 +130,16 @@ def test_take_loaned_message(publisher, subscription):
         )
         assert list((ctypes.c_double * 3).from_address(loan.value)) == [number, 0, 0]
         assert rmw.rmw_return_loaned_message_from_subscription(subscription, loan) == 0
+
+
+def test_an_event_is_initialized_once(publisher):
+    event, handle, publication_matched = Event(), rmw_handle("publisher", publisher), 10
+    codes = [
+        rmw.rmw_publisher_event_init(ctypes.byref(event), handle, publication_matched)
+        for _ in range(2)
+    ]
+    assert codes == [OK, INVALID_ARGUMENT]
+    rcutils.rcutils_reset_error()
 
 
 def test_gids_are_compared(node, publisher):

@@ -11,6 +11,7 @@
 #include "rmw/events/callback.hpp"
 #include "rmw/events/callback_thread.hpp"
 #include "rmw/events/event_counts.hpp"
+#include "rmw/events/event_types.hpp"
 
 namespace rmw_manycore {
 
@@ -47,9 +48,9 @@ private:
 
   CallbackThread & thread_;
   std::mutex mutex_;  ///< guards told_ and callbacks_; never held while user code runs
-  std::array<EventCounts, RMW_EVENT_INVALID> told_;
-  std::array<std::atomic<uint64_t>, RMW_EVENT_INVALID> told_changes_{};
-  std::array<std::unique_ptr<Callback>, RMW_EVENT_INVALID> callbacks_;
+  std::array<EventCounts, event_type_slots> told_;
+  std::array<std::atomic<uint64_t>, event_type_slots> told_changes_{};
+  std::array<std::unique_ptr<Callback>, event_type_slots> callbacks_;
 };
 
 }  // namespace rmw_manycore

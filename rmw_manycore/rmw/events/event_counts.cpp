@@ -65,7 +65,7 @@ void fill_status(
     case RMW_EVENT_MESSAGE_LOST:
       *static_cast<rmw_message_lost_status_t *>(status) = {now.total, now.total - told.total};
       break;
-    case RMW_EVENT_INVALID:
+    default:
       break;
   }
 }
