@@ -19,13 +19,13 @@ namespace {
 /// meanwhile. So the time is counted by timeouts that ended while the process could run.
 constexpr int counted_timeouts = 10;
 
-constexpr size_t stack_bytes = 128 << 10;
+constexpr size_t stack_bytes = 1 << 20;
 
-/// A thread that waits for the lock: flock() has no timeout, and a signal that would interrupt it
-/// belongs to the program.
+/// A thread that waits for the lock, and acts once it has it: flock() has no timeout, and a signal
+/// that would interrupt it belongs to the program.
 class FlockThread {
 public:
-  explicit FlockThread(int fd) : fd_(fd) {
+  FlockThread(int fd, const std::function<void()> & act) : fd_(fd), act_(act) {
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
     pthread_attr_setstacksize(&attributes, stack_bytes);
@@ -36,6 +36,7 @@ public:
       throw_errno("cannot start a thread to wait for a lock");
     }
   }
+  /// Gives up if the thread is still waiting.
   ~FlockThread() {
     pthread_cancel(thread_);
     pthread_join(thread_, nullptr);
@@ -44,11 +45,16 @@ public:
   FlockThread & operator=(const FlockThread &) = delete;
 
   /// True once flock() has returned.
-  bool wait_for_end(std::chrono::milliseconds timeout) {
+  bool wait_for_lock(std::chrono::milliseconds timeout) {
     std::unique_lock<std::mutex> guard(mutex_);
-    return ended_.wait_for(guard, timeout, [this] { return error_ >= 0; });
+    return changed_.wait_for(guard, timeout, [this] { return error_ != waiting; });
   }
-  int error() const noexcept { return error_; }
+  /// Returns the error of flock(), once the thread has acted if there was none.
+  int wait_for_end() {
+    std::unique_lock<std::mutex> guard(mutex_);
+    changed_.wait(guard, [this] { return has_ended_; });
+    return error_;
+  }
 
 private:
   /// flock() is no cancellation point, so the thread is cancelled asynchronously, in the system
@@ -62,17 +68,30 @@ private:
       pthread_setcanceltype(PTHREAD_CANCEL_DEFERRED, nullptr);
     } while (error == EINTR);
     pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, nullptr);
-    const std::lock_guard<std::mutex> guard(self.mutex_);
-    self.error_ = error;
-    self.ended_.notify_one();
+    self.note([&] { self.error_ = error; });
+    if (error == 0) {
+      self.act_();
+    }
+    self.note([&] { self.has_ended_ = true; });
     return nullptr;
   }
 
+  template<typename Change>
+  void note(Change change) {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    change();
+    changed_.notify_one();
+  }
+
+  static constexpr int waiting = -1;
+
   const int fd_;
+  const std::function<void()> & act_;
   pthread_t thread_{};
   std::mutex mutex_;
-  std::condition_variable ended_;
-  int error_ = -1;
+  std::condition_variable changed_;
+  int error_ = waiting;  ///< of flock()
+  bool has_ended_ = false;
 };
 
 /// False if another process holds the lock.
@@ -90,18 +109,19 @@ bool try_flock(int fd) {
 
 }  // namespace
 
-bool flock_within(int fd, int timeout_ms) {
+bool flock_within(int fd, int timeout_ms, const std::function<void()> & act) {
   if (try_flock(fd)) {
+    act();
     return true;
   }
   if (timeout_ms == 0) {
     return false;
   }
-  FlockThread waiting(fd);
+  FlockThread thread(fd, act);
   const std::chrono::milliseconds timeout(timeout_ms / counted_timeouts + 1);
   for (int i = 0; i < counted_timeouts; ++i) {
-    if (waiting.wait_for_end(timeout)) {
-      errno = waiting.error();
+    if (thread.wait_for_lock(timeout)) {
+      errno = thread.wait_for_end();
       if (errno != 0) {
         throw_errno("cannot lock a file");
       }

@@ -5,8 +5,9 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <cerrno>
+#include <exception>
+#include <utility>
 
 #include "platform/bounded_flock.hpp"
 #include "platform/error.hpp"
@@ -31,14 +32,30 @@ FileLock::~FileLock() {
 }
 
 std::optional<FileLock> FileLock::acquire(const std::string & path, int timeout_ms) {
-  return acquire(path, O_CREAT, timeout_ms);
+  return acquire(path, O_CREAT, timeout_ms, [] {});
 }
 
 std::optional<FileLock> FileLock::acquire_existing(const std::string & path, int timeout_ms) {
-  return acquire(path, 0, timeout_ms);
+  return acquire(path, 0, timeout_ms, [] {});
 }
 
-std::optional<FileLock> FileLock::acquire(const std::string & path, int flags, int timeout_ms) {
+bool FileLock::run(const std::string & path, int timeout_ms, const std::function<void()> & act) {
+  std::exception_ptr thrown;
+  const auto lock = acquire(path, O_CREAT, timeout_ms, [&] {
+    try {
+      act();
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+  });
+  if (thrown) {
+    std::rethrow_exception(thrown);
+  }
+  return lock.has_value();
+}
+
+std::optional<FileLock> FileLock::acquire(
+  const std::string & path, int flags, int timeout_ms, const std::function<void()> & act) {
   while (true) {
     FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0600));
     if (!fd && errno == ENOENT) {
@@ -47,13 +64,20 @@ std::optional<FileLock> FileLock::acquire(const std::string & path, int flags, i
     if (!fd) {
       throw_errno("cannot open " + path);
     }
-    if (!flock_within(fd.get(), timeout_ms)) {
+    bool is_current = false;
+    const auto act_on_current = [&] {
+      is_current = same_file(fd.get(), path);
+      if (is_current) {
+        act();
+      }
+    };
+    if (!flock_within(fd.get(), timeout_ms, act_on_current)) {
       throw Error(
         ErrorCode::timeout, path + " has been locked for " + std::to_string(timeout_ms) +
                               " ms: " + describe_flock_owner(fd.get()));
     }
     FileLock lock(std::move(fd));
-    if (same_file(lock.fd_.get(), path)) {
+    if (is_current) {
       return lock;
     }
   }

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -19,6 +20,9 @@ public:
   static std::optional<FileLock> acquire(const std::string & path, int timeout_ms);
   /// As acquire(), but empty if the file itself is missing.
   static std::optional<FileLock> acquire_existing(const std::string & path, int timeout_ms);
+  /// As acquire(), and calls `act` while the file is locked, on the thread that waited for it; see
+  /// flock_within(). Passes on what `act` throws. False if the directory is missing.
+  static bool run(const std::string & path, int timeout_ms, const std::function<void()> & act);
   FileLock(FileLock &&) = default;
   FileLock & operator=(FileLock &&) = default;
   /// Unlocks before closing: a child of fork() may share the open file, which holds the lock.
@@ -26,7 +30,8 @@ public:
 
 private:
   explicit FileLock(FileDescriptor fd) : fd_(std::move(fd)) {}
-  static std::optional<FileLock> acquire(const std::string & path, int flags, int timeout_ms);
+  static std::optional<FileLock> acquire(
+    const std::string & path, int flags, int timeout_ms, const std::function<void()> & act);
   FileDescriptor fd_;
 };
 

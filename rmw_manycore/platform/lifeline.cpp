@@ -1,39 +1,20 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "platform/lifeline.hpp"
 
-#include <pthread.h>
-
-#include <condition_variable>
 #include <cstdio>
-#include <future>
-#include <mutex>
-#include <thread>
 
-#include "platform/blocked_signals.hpp"
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
 #include "platform/file_lock.hpp"
-#include "platform/fork_side.hpp"
 
 namespace manycore {
 namespace {
 
 constexpr uint64_t lifelines_magic = 0x4d43'4c49'4645'4c4e;  // "MCLIFELN"
-constexpr long no_wait_ns = 0;
 constexpr int hold_timeout_ms = 10'000;
 
-/// Locks the mutex of a line that is not held. The caller excludes others that try to hold it, as
-/// RobustMutex requires.
-void lock(RobustMutex & mutex) {
-  switch (mutex.lock(no_wait_ns)) {
-    case RobustMutex::Outcome::locked:
-      return;
-    case RobustMutex::Outcome::owner_died:
-      mutex.mark_consistent();
-      return;
-    case RobustMutex::Outcome::timed_out:
-      throw Error(ErrorCode::corrupt, "a lifeline is damaged");
-  }
+pid_t thread_in(const Lifeline & line) {
+  return static_cast<pid_t>(line.thread.load(std::memory_order_acquire) & FUTEX_TID_MASK);
 }
 
 /// When a process is killed, its threads end one by one in no particular order. The thread that
@@ -62,78 +43,24 @@ struct Lifelines::Header {
   char reserved[52];
 };
 
-/// The thread never unlocks the mutex: the kernel releases it when the thread ends, by intent or by
-/// a kill.
-struct HeldLifeline::Holder {
-  explicit Holder(std::shared_ptr<SharedMemory> memory_, Lifeline & line_)
-  : memory(std::move(memory_)), line(line_) {}
-
-  void hold();
-  void let_go();
-
-  std::shared_ptr<SharedMemory> memory;
-  Lifeline & line;
-  ForkSide side;
-  std::promise<bool> is_held;
-  std::mutex mutex;
-  std::condition_variable changed;
-  bool ends = false;
-  std::thread thread;
-};
-
-void HeldLifeline::Holder::hold() {
-  pthread_setname_np(pthread_self(), "manycore_life");
-  try {
-    const bool held = !line.mutex.is_locked();
-    if (held) {
-      // Before it is held: a line that is held names its holder.
-      const ProcessIdentity own = ProcessIdentity::own();
-      line.start_time = own.start_time;
-      line.pid_namespace = own.pid_namespace;
-      line.pid = own.pid;
-      lock(line.mutex);
-    }
-    is_held.set_value(held);
-    if (!held) {
-      return;
-    }
-  } catch (...) {
-    is_held.set_exception(std::current_exception());
-    return;
-  }
-  std::unique_lock<std::mutex> lock(mutex);
-  changed.wait(lock, [this] { return ends; });
-}
-
-void HeldLifeline::Holder::let_go() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex);
-    ends = true;
-  }
-  changed.notify_one();
-  thread.join();
-}
-
-HeldLifeline::HeldLifeline(std::unique_ptr<Holder> holder) : holder_(std::move(holder)) {}
-
-HeldLifeline::HeldLifeline(HeldLifeline &&) noexcept = default;
-
 HeldLifeline & HeldLifeline::operator=(HeldLifeline && other) noexcept {
-  std::swap(holder_, other.holder_);
+  std::swap(memory_, other.memory_);
+  std::swap(line_, other.line_);
+  std::swap(thread_, other.thread_);
+  std::swap(side_, other.side_);
   return *this;
 }
 
 HeldLifeline::~HeldLifeline() {
-  if (!holder_) {
+  if (!thread_) {
     return;
   }
-  if (holder_->side.is_inherited()) {
-    // The thread belongs to the parent, and a mutex it holds cannot be destroyed here.
-    holder_.release();
+  if (side_.is_inherited()) {
+    thread_.release();  // it runs in the parent
     return;
   }
-  holder_->line.pid = 0;  // this process lives on without the line
-  holder_->let_go();
+  line_->pid = 0;  // this process lives on without the line
+  thread_.reset();
 }
 
 /// Creates the file under another name and renames it when it is complete: a process killed in
@@ -143,9 +70,6 @@ void Lifelines::create(const std::string & path, uint32_t count) {
   const std::string unfinished = path + ".new";
   const SharedMemory memory = SharedMemory::create(unfinished, bytes);
   memory.reserve(0, bytes);
-  for (uint32_t line = 0; line < count; ++line) {
-    memory.at<Lifeline>(sizeof(Header) + uint64_t{line} * sizeof(Lifeline)).mutex.initialize();
-  }
   auto & header = memory.at<Header>(0);
   header.count = count;
   header.magic.store(lifelines_magic, std::memory_order_release);
@@ -172,31 +96,33 @@ Lifelines Lifelines::open(const std::string & path) {
   return lifelines;
 }
 
-std::optional<HeldLifeline> Lifelines::try_hold(uint32_t line) const {
+std::optional<HeldLifeline> Lifelines::try_hold(
+  uint32_t number, std::unique_ptr<LifeThread> & thread) const {
   // One process at a time tries; the kernel opens the file to the next one only after the last
   // thread of a killed one has ended.
   const std::optional<FileLock> others = FileLock::acquire_existing(path_, hold_timeout_ms);
   if (!others) {
     throw Error(ErrorCode::system, path_ + " was removed; try again");
   }
-  auto holder = std::make_unique<HeldLifeline::Holder>(memory_, at(line));
-  {
-    const BlockedSignals blocked;
-    holder->thread = std::thread([&holder = *holder] { holder.hold(); });
+  if (is_locked(number)) {
+    return std::nullopt;
   }
-  try {
-    if (holder->is_held.get_future().get()) {
-      return HeldLifeline(std::move(holder));
-    }
-  } catch (...) {
-    holder->thread.join();
-    throw;
-  }
-  holder->thread.join();
-  return std::nullopt;
+  // Before it is held: a line that is held names its holder.
+  Lifeline & line = at(number);
+  const ProcessIdentity own = ProcessIdentity::own();
+  line.start_time = own.start_time;
+  line.pid_namespace = own.pid_namespace;
+  line.pid = own.pid;
+  thread->hold(line.thread);
+  return HeldLifeline(memory_, line, std::move(thread));
 }
 
-bool Lifelines::is_locked(uint32_t line) const { return at(line).mutex.is_locked(); }
+std::optional<HeldLifeline> Lifelines::try_hold(uint32_t line) const {
+  auto thread = std::make_unique<LifeThread>();
+  return try_hold(line, thread);
+}
+
+bool Lifelines::is_locked(uint32_t line) const { return thread_in(at(line)) != 0; }
 
 bool Lifelines::is_held(uint32_t line) const {
   if (is_locked(line)) {
@@ -210,12 +136,12 @@ bool Lifelines::is_held(uint32_t line) const {
 }
 
 void Lifelines::release_if_abandoned(uint32_t line) const {
-  const pid_t thread = at(line).mutex.owner();
+  uint32_t seen = at(line).thread.load();
   const ProcessIdentity last = holder(line);
   if (
-    thread != 0 && last.pid > 0 && last.is_of_this_pid_namespace() &&
+    (seen & FUTEX_TID_MASK) != 0 && last.pid > 0 && last.is_of_this_pid_namespace() &&
     !(ProcessIdentity::of(last.pid) == last) && holder(line) == last) {
-    at(line).mutex.mark_owner_died(thread);
+    at(line).thread.compare_exchange_strong(seen, FUTEX_OWNER_DIED);
   }
 }
 

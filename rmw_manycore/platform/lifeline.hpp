@@ -2,40 +2,47 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "platform/fork_side.hpp"
+#include "platform/life_thread.hpp"
 #include "platform/process_identity.hpp"
-#include "platform/robust_mutex.hpp"
 #include "platform/shared_memory.hpp"
 
 namespace manycore {
 
-/// One line of a lifeline file. A dedicated thread holds its mutex; the kernel marks the mutex when
-/// the thread ends for any reason.
+/// One line of a lifeline file. A LifeThread of its holder holds `thread`.
 struct Lifeline {
-  RobustMutex mutex;
+  FutexWord thread;  ///< its number in its PID namespace, and the kernel's flags
+  uint32_t reserved[9];
   /// ProcessIdentity of the current or last holder; pid 0 after the holder released the line.
   std::atomic<pid_t> pid;
   std::atomic<uint64_t> start_time;
   std::atomic<uint64_t> pid_namespace;
 };
-static_assert(sizeof(Lifeline) == 64);
+static_assert(sizeof(Lifeline) == 64 && offsetof(Lifeline, pid) == 40);
 
 /// A line held by this process during the object's lifetime. A child of fork() neither holds nor
 /// releases it.
 class HeldLifeline {
 public:
-  HeldLifeline(HeldLifeline &&) noexcept;
-  HeldLifeline & operator=(HeldLifeline &&) noexcept;
+  HeldLifeline(HeldLifeline &&) noexcept = default;
+  HeldLifeline & operator=(HeldLifeline && other) noexcept;
   ~HeldLifeline();
 
 private:
   friend class Lifelines;
-  struct Holder;
-  explicit HeldLifeline(std::unique_ptr<Holder> holder);
-  std::unique_ptr<Holder> holder_;
+  HeldLifeline(
+    std::shared_ptr<SharedMemory> memory, Lifeline & line, std::unique_ptr<LifeThread> thread)
+  : memory_(std::move(memory)), line_(&line), thread_(std::move(thread)) {}
+
+  std::shared_ptr<SharedMemory> memory_;
+  Lifeline * line_;
+  std::unique_ptr<LifeThread> thread_;
+  ForkSide side_;
 };
 
 /// A file of lifelines, which prove that the processes that hold them live. Needs no open
@@ -46,8 +53,10 @@ public:
   /// Throws Error{corrupt} if the file is not a lifeline file.
   static Lifelines open(const std::string & path);
 
-  /// Empty if the line is already held. Throws Error{corrupt} if the line is damaged, Error{system}
-  /// if the file was removed, and std::system_error if no thread can be created.
+  /// Empty if the line is already held; otherwise takes the thread, which was started before so
+  /// that no other process waits for it. Throws Error{system} if the file was removed.
+  std::optional<HeldLifeline> try_hold(uint32_t line, std::unique_ptr<LifeThread> & thread) const;
+  /// As above. Throws std::system_error if no thread can be started.
   std::optional<HeldLifeline> try_hold(uint32_t line) const;
   /// False once the holder has ended. For a holder in another PID namespace, its last threads may
   /// still be running for a moment after the one that held the line.

@@ -32,7 +32,7 @@
 namespace manycore {
 namespace {
 
-/// The JoinLock makes it one creator at a time; making the files takes too long for the registry
+/// The join lock makes it one creator at a time; making the files takes too long for the registry
 /// lock.
 void ensure_cluster(Registry & registry, uint32_t id) {
   RegistryHeader & header = registry.header();
@@ -59,8 +59,8 @@ struct Process::Impl {
   /// First half of the other constructor: joins the platform.
   Impl(const Placement & placement_, JoinOnly);
 
-  uint32_t take_slot_and_line();
-  uint32_t take_process_slot();
+  uint32_t take_slot_and_line(std::unique_ptr<LifeThread> & life);
+  uint32_t take_process_slot(std::unique_ptr<LifeThread> & life);
   void require_movers();
   uint32_t publish_endpoint(const EndpointSpec & spec, EndpointKind kind);
   uint32_t add_endpoint(const EndpointSpec & spec, EndpointKind kind);
@@ -87,15 +87,15 @@ struct Process::Impl {
 
 Process::Impl::Impl(const Placement & placement_, JoinOnly)
 : placement(placement_), paths(PlatformPaths::of(placement_.platform)) {
-  {
-    const JoinLock join_lock(paths);
+  auto life = std::make_unique<LifeThread>();  // no other process waits for its start
+  under_join_lock(paths, [&] {
     ensure_platform(paths, host_profile(), {});
     try {
       registry = std::make_unique<Registry>(paths);
       placement.require_on(registry->header().profile);
       ensure_cluster(*registry, placement.cluster);
       const Registry::Lock lock(*registry);
-      slot = take_process_slot();
+      slot = take_process_slot(life);
       registry->sit(slot);
     } catch (...) {
       if (!is_alive(paths)) {
@@ -103,7 +103,7 @@ Process::Impl::Impl(const Placement & placement_, JoinOnly)
       }
       throw;
     }
-  }
+  });
 }
 
 /// Delegates, so that ~Impl() leaves the platform if the rest fails.
@@ -131,7 +131,7 @@ void Process::Impl::attach(uint32_t taken) {
 
 /// Takes a free slot and its line. Passes over lines that are held, by processes that have just
 /// given back their slots, or damaged.
-uint32_t Process::Impl::take_slot_and_line() {
+uint32_t Process::Impl::take_slot_and_line(std::unique_ptr<LifeThread> & life) {
   Table<ProcessEntry> & processes = registry->processes();
   std::vector<uint32_t> passed_over;
   const auto give_back = [&] {
@@ -142,7 +142,7 @@ uint32_t Process::Impl::take_slot_and_line() {
     while (true) {
       const uint32_t taken = processes.take("processes");
       passed_over.push_back(taken);
-      lifeline = registry->lifelines().try_hold(taken);
+      lifeline = registry->lifelines().try_hold(taken, life);
       if (lifeline) {
         passed_over.pop_back();
         give_back();
@@ -155,9 +155,9 @@ uint32_t Process::Impl::take_slot_and_line() {
   }
 }
 
-uint32_t Process::Impl::take_process_slot() {
+uint32_t Process::Impl::take_process_slot(std::unique_ptr<LifeThread> & life) {
   Table<ProcessEntry> & processes = registry->processes();
-  const uint32_t taken = take_slot_and_line();
+  const uint32_t taken = take_slot_and_line(life);
   ProcessEntry & entry = processes[taken];
   entry.pid = getpid();
   entry.cluster = placement.cluster;
@@ -199,7 +199,7 @@ void Process::Impl::sweep_at_parting() noexcept {
   }
 }
 
-/// The JoinLock is the user's, not the platform's: it is taken last, and by the last process only,
+/// The join lock is the user's, not the platform's: it is taken last, and by the last process only,
 /// so that no join waits for this one. The registry lock's owner may be stopped.
 void Process::Impl::leave() {
   // Close endpoints whose destructors could not get the lock.
@@ -231,8 +231,7 @@ void Process::Impl::leave() {
   // Of processes that leave at the same time, the one whose line is released last finds no other.
   lifeline.reset();
   if (!is_in_use(*registry)) {
-    const JoinLock join_lock(paths);
-    remove_if_unused(*registry);
+    under_join_lock(paths, [this] { remove_if_unused(*registry); });
   }
 }
 

@@ -28,7 +28,7 @@ public:
   /// Waits until the receive thread of `cluster` serves; returns its pid. `not_this` is a
   /// predecessor.
   pid_t receive_thread(uint32_t cluster, pid_t not_this = 0) const;
-  /// Stops it while it holds neither the registry lock nor the JoinLock; returns its pid.
+  /// Stops it while it holds neither the registry lock nor the join lock; returns its pid.
   pid_t stop_receive_thread(uint32_t cluster) const;
   bool exists() const;
 

@@ -126,8 +126,7 @@ struct Fixture {
     kill(receive_thread, SIGKILL);
     wait_until("its end", [&] { return !is_running(receive_thread); });
     configurator.reset();
-    const JoinLock lock(platform.paths());
-    remove_platform(platform.paths());
+    under_join_lock(platform.paths(), [this] { remove_platform(platform.paths()); });
   }
 
   TestPlatform platform;

@@ -130,8 +130,7 @@ struct Fixture {
       wait_until("its end", [&] { return !is_running(pid); });
     }
     configurator.reset();
-    const JoinLock lock(platform.paths());
-    remove_platform(platform.paths());
+    under_join_lock(platform.paths(), [this] { remove_platform(platform.paths()); });
   }
 
   TestPlatform platform;

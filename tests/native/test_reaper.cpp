@@ -287,8 +287,7 @@ TEST_CASE("a receive thread that is started after all nodes died removes the pla
     platform.receive_thread(1);
   }
   wait_until("the platform is gone", [&] { return !platform.exists(); });
-  {
-    const JoinLock lock(paths);
+  under_join_lock(paths, [&] {
     ensure_platform(paths, host_profile(), {});
     Registry registry(paths);
     Cluster::create(paths, 1, registry.header().profile.smem_bytes, registry.nonce());
@@ -297,7 +296,7 @@ TEST_CASE("a receive thread that is started after all nodes died removes the pla
     registry.processes()[slot].pid = dead;
     registry.processes()[slot].cluster = 1;
     registry.processes().publish(slot);
-  }
+  });
   ensure_receive_thread(Registry(paths), 1);  // ~TestPlatform waits for this
 }
 

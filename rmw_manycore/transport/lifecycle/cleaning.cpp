@@ -70,14 +70,16 @@ void require_unused(const PlatformPaths & paths, const std::string & platform, b
 
 std::vector<std::string> clean_platform(const std::string & platform, bool force) {
   const PlatformPaths paths = PlatformPaths::of(platform);
-  const JoinLock lock(paths);
-  require_unused(paths, platform, force);
-  std::vector<std::string> removed = remove_platform(paths);
+  std::vector<std::string> removed;
   std::error_code reason;
-  // What is left are no files of a platform, e.g. a directory in the place of one.
-  if (std::filesystem::remove_all(paths.directory, reason) > 0 && !reason) {
-    removed.push_back(paths.directory);
-  }
+  under_join_lock(paths, [&] {
+    require_unused(paths, platform, force);
+    removed = remove_platform(paths);
+    // What is left are no files of a platform, e.g. a directory in the place of one.
+    if (std::filesystem::remove_all(paths.directory, reason) > 0 && !reason) {
+      removed.push_back(paths.directory);
+    }
+  });
   if (reason) {
     throw Error(
       ErrorCode::system, "cannot remove " + paths.directory + ": " + reason.message() +

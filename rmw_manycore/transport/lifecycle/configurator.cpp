@@ -14,15 +14,16 @@ Configurator::Configurator(
   const std::string & platform, const Profile & profile,
   const std::vector<TopicConfiguration> & topics)
 : paths_(PlatformPaths::of(platform)) {
-  const JoinLock lock(paths_);
-  if (is_alive(paths_)) {
-    throw Error(
-      ErrorCode::invalid_argument, "platform '" + platform +
-                                     "' is running already; stop it, or choose another name "
-                                     "('name' under 'platform' in the mapfile)");
-  }
-  ensure_platform(paths_, profile, topics);
-  lifeline_ = Lifelines::open(paths_.alive()).try_hold(configurator_line);
+  under_join_lock(paths_, [&] {
+    if (is_alive(paths_)) {
+      throw Error(
+        ErrorCode::invalid_argument, "platform '" + platform +
+                                       "' is running already; stop it, or choose another name "
+                                       "('name' under 'platform' in the mapfile)");
+    }
+    ensure_platform(paths_, profile, topics);
+    lifeline_ = Lifelines::open(paths_.alive()).try_hold(configurator_line);
+  });
 }
 
 Configurator::~Configurator() {
@@ -30,10 +31,11 @@ Configurator::~Configurator() {
     return;
   }
   try {
-    const JoinLock lock(paths_);
-    lifeline_.reset();
-    Registry registry(paths_);
-    remove_if_unused(registry);
+    under_join_lock(paths_, [this] {
+      lifeline_.reset();
+      Registry registry(paths_);
+      remove_if_unused(registry);
+    });
   } catch (const std::exception &) {
     // Live nodes keep the platform; the last one to leave removes it.
   }

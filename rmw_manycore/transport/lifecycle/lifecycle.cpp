@@ -59,6 +59,20 @@ std::vector<std::string> entries_of(const std::string & directory) {
   return names;
 }
 
+/// Removes the join lock, and the user directory, at its end if no platform is left.
+struct UserDirectoryTidier {
+  ~UserDirectoryTidier() {
+    if (
+      entries_of(paths.user_directory) == std::vector<std::string>{PlatformPaths::join_lock_name}) {
+      unlink(paths.join_lock().c_str());
+      if (!paths.is_chosen) {
+        rmdir(paths.user_directory.c_str());
+      }
+    }
+  }
+  const PlatformPaths & paths;
+};
+
 bool exists(const std::string & path) { return access(path.c_str(), F_OK) == 0; }
 
 /// Directory of this library, symbolic links resolved.
@@ -86,6 +100,18 @@ std::string receive_thread_program() {
   throw Error(
     ErrorCode::system,
     "manycore_receive_thread was not found near " + directory + "; reinstall rmw-manycore");
+}
+
+/// The caller holds the join lock.
+void start_receive_thread(const PlatformPaths & paths, uint32_t cluster) {
+  const std::string program = receive_thread_program();
+  const int status = spawn_daemon(
+    {program, paths.directory.substr(paths.user_directory.size() + 1), std::to_string(cluster)});
+  if (status != 0) {
+    throw Error(
+      ErrorCode::system, "cannot start the receive thread of cluster " + std::to_string(cluster) +
+                           " (" + program + ", status " + std::to_string(status) + ")");
+  }
 }
 
 /// Without the registry lock, a process that is joining may be mistaken for dead.
@@ -150,23 +176,16 @@ bool reap(Registry & registry, uint32_t process) {
 
 }  // namespace
 
-JoinLock::JoinLock(const PlatformPaths & paths) : paths_(paths) {
-  while (!lock_) {
+void under_join_lock(const PlatformPaths & paths, const std::function<void()> & act) {
+  const auto act_and_tidy_up = [&] {
+    const UserDirectoryTidier tidier{paths};
+    act();
+  };
+  do {
     if (!paths.is_chosen) {
       make_private_directory(paths.user_directory);
     }
-    lock_ = FileLock::acquire(paths.join_lock(), join_timeout_ms);
-  }
-}
-
-JoinLock::~JoinLock() {
-  if (
-    entries_of(paths_.user_directory) == std::vector<std::string>{PlatformPaths::join_lock_name}) {
-    unlink(paths_.join_lock().c_str());
-    if (!paths_.is_chosen) {
-      rmdir(paths_.user_directory.c_str());
-    }
-  }
+  } while (!FileLock::run(paths.join_lock(), join_timeout_ms, act_and_tidy_up));
 }
 
 /// SMEM of each cluster in bytes, in whole MiB, on a machine with `shared_bytes` of shared memory
@@ -325,18 +344,12 @@ void ensure_receive_thread(const Registry & registry, uint32_t cluster) {
     return;
   }
   const PlatformPaths & paths = registry.paths();
-  const JoinLock lock(paths);  // one starter at a time
-  if (!registry.is_current() || registry.lifelines().is_held(line)) {
-    return;
-  }
-  const std::string program = receive_thread_program();
-  const int status = spawn_daemon(
-    {program, paths.directory.substr(paths.user_directory.size() + 1), std::to_string(cluster)});
-  if (status != 0) {
-    throw Error(
-      ErrorCode::system, "cannot start the receive thread of cluster " + std::to_string(cluster) +
-                           " (" + program + ", status " + std::to_string(status) + ")");
-  }
+  // one starter at a time
+  under_join_lock(paths, [&] {
+    if (registry.is_current() && !registry.lifelines().is_held(line)) {
+      start_receive_thread(paths, cluster);
+    }
+  });
 }
 
 }  // namespace manycore

@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,21 +12,12 @@
 
 namespace manycore {
 
-/// Serialises joining and leaving of all platforms of this user during its lifetime. The first
-/// holder creates the user directory; the last one that leaves no platform in it removes the
-/// directory, unless it is MANYCORE_DIRECTORY.
-class JoinLock {
-public:
-  /// Throws Error{permission} if the user directory is not private, and Error{timeout}.
-  explicit JoinLock(const PlatformPaths & paths);
-  ~JoinLock();
-  JoinLock(const JoinLock &) = delete;
-  JoinLock & operator=(const JoinLock &) = delete;
-
-private:
-  PlatformPaths paths_;
-  std::optional<FileLock> lock_;
-};
+/// Calls `act` under the join lock, which serialises joining and leaving of all platforms of this
+/// user; on another thread if the lock has to be waited for (see FileLock::run()). The first owner
+/// creates the user directory; the last one that leaves no platform in it removes the directory,
+/// unless it is MANYCORE_DIRECTORY. Passes on what `act` throws. Throws Error{permission} if the
+/// user directory is not private, and Error{timeout}.
+void under_join_lock(const PlatformPaths & paths, const std::function<void()> & act);
 
 uint64_t host_smem_bytes(uint64_t shared_bytes, uint32_t clusters);
 
@@ -35,7 +26,7 @@ uint64_t host_smem_bytes(uint64_t shared_bytes, uint32_t clusters);
 Profile host_profile();
 
 /// Creates directory and registry of the platform if they are missing, after removing the files of
-/// a dead platform. The caller holds the JoinLock.
+/// a dead platform. The caller holds the join lock.
 void ensure_platform(
   const PlatformPaths & paths, const Profile & profile,
   const std::vector<TopicConfiguration> & topics);
@@ -48,11 +39,11 @@ bool is_in_use(Registry & registry);
 
 /// Removes all files of a platform without processes, including those that a killed process left,
 /// but not those of a later platform of the same name. False if the platform is in use. The caller
-/// holds the JoinLock.
+/// holds the join lock.
 bool remove_if_unused(Registry & registry);
 
 /// Ends the receive threads and removes all files; returns their paths. The caller holds the
-/// JoinLock.
+/// join lock.
 std::vector<std::string> remove_platform(const PlatformPaths & paths);
 
 /// Marks the platform as removed and wakes all members, which then notice.

@@ -53,20 +53,24 @@ void drain(const FileDescriptor & descriptor) {
 /// Removes the platform if no process uses it. True if this receive thread has nothing left to
 /// serve.
 bool end_if_unused(Registry & registry) {
-  const JoinLock lock(registry.paths());
-  if (!registry.is_current()) {
-    note_removal(registry);
-    remove_if_unused(registry);  // files left by a process that was killed meanwhile
-    return true;
-  }
-  return remove_if_unused(registry);
+  bool ends = false;
+  under_join_lock(registry.paths(), [&] {
+    if (!registry.is_current()) {
+      note_removal(registry);
+      remove_if_unused(registry);  // files left by a process that was killed meanwhile
+      ends = true;
+    } else {
+      ends = remove_if_unused(registry);
+    }
+  });
+  return ends;
 }
 
 }  // namespace
 
 void exit_if_unused(Registry & registry) {
   // One thread at a time: _exit() in one thread would end the other midway, and leave the directory
-  // that its JoinLock created.
+  // that its join lock created.
   static std::mutex mutex;
   const std::lock_guard<std::mutex> guard(mutex);
   if (end_if_unused(registry)) {
@@ -298,7 +302,7 @@ int Reaper::try_to_end(int timeout_ms) noexcept {
     some_ended_ = false;
     return timeout_ms;
   } catch (const std::exception &) {
-    return retry_ms;  // the JoinLock stayed taken
+    return retry_ms;  // the join lock stayed taken
   }
 }
 
