@@ -20,9 +20,9 @@ namespace rmw_manycore {
 /// the first callback is set; sleeps on its own wake word, and looks at what is marked when that is
 /// raised. A thread of the context that publishes calls for its message itself. Thread-safe.
 ///
-/// A thread that adds or removes a Reporter waits for no other one's function: only the mutex of
-/// the Reporter is held while its function runs, and a mutex that no such thread takes. Locked in
-/// this order: `turn_`, Reporter::mutex(), `mutex_`.
+/// A thread that looks for arrivals holds `turn_`, and one that calls a function holds the mutex of
+/// its Reporter. add() and remove() take neither `turn_` nor the mutex of another Reporter, so they
+/// wait for no other function. Lock order: `turn_`, Reporter::mutex(), `mutex_`.
 class CallbackThread {
 public:
   explicit CallbackThread(manycore::Waiters & waiters) noexcept : waiters_(waiters) {}
