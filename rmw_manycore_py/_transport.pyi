@@ -281,6 +281,9 @@ def platforms() -> list[str]:
 def platform_directory(name: str) -> str:
     """Return the directory that holds all files of a platform."""
 
+def platforms_place() -> str:
+    """Return an existing directory on the file system of this user's platforms."""
+
 def clean(name: str, force: bool = False) -> list[str]:
     """Remove what a dead platform left and return the paths; PlatformInUseError while it lives.
 

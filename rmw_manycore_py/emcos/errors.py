@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from rmw_manycore_py._transport import PlatformError
 from rmw_manycore_py.transport.errors import TransportError
 
 
@@ -16,11 +17,13 @@ class PeerGoneError(TransportError, ConnectionError):
 
 @contextmanager
 def system_errors(subject: str) -> Iterator[None]:
-    """Raise a TransportError about `subject` for an error of the operating system."""
+    """Raise a TransportError about `subject` for an error of the system or of its settings."""
     try:
         yield
     except TransportError:
         raise
+    except PlatformError as error:
+        raise TransportError(f"{subject}: {error}") from error
     except MemoryError as error:
         raise TransportError(f"{subject}: out of memory") from error
     except OSError as error:

@@ -15,6 +15,7 @@ import socket
 import struct
 import time
 
+from rmw_manycore_py import _transport
 from rmw_manycore_py.emcos.waiting import wait_for_any
 from rmw_manycore_py.transport.arguments import Deadline
 from rmw_manycore_py.transport.errors import TransportError
@@ -47,8 +48,14 @@ def meet(platform: str, name: str, hello: bytes, deadline: Deadline) -> tuple[so
 
 
 def _address(platform: str, name: str) -> bytes:
-    """Return an abstract address: names may be longer than addresses."""
-    digest = hashlib.sha256(f"{platform}/{name}".encode()).hexdigest()[:32]
+    """Return an abstract address, which all processes of a network namespace share.
+
+    It stands for the directory that holds the platforms, however its path is written, and the
+    names, which may be longer than addresses.
+    """
+    directory = os.stat(_transport.platforms_place())
+    key = f"{directory.st_dev}:{directory.st_ino}/{platform}/{name}"
+    digest = hashlib.sha256(key.encode()).hexdigest()[:32]
     return f"\0manycore-emcos-{os.geteuid()}-{digest}".encode()
 
 

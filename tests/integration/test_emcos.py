@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -268,3 +269,36 @@ def test_a_writer_never_waits_for_its_reader(start, platform: str) -> None:
         assert writer.dropped == 1
     peer.say("")
     peer.wait_for(f"^took {count}$")
+
+
+def receive_one() -> None:
+    announce("opening")
+    with emcos.MessageReceiver("t", **WAITS) as receiver:
+        announce(receiver.receive(**WAITS).data.decode())
+
+
+def test_platforms_of_one_name_in_two_directories_are_apart(
+    start, tmp_path: Path, platform: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    directories = [tmp_path / name for name in ("one", "two")]
+    for directory in directories:
+        directory.mkdir(mode=0o700)
+    (tmp_path / "link").symlink_to(directories[0])
+    receiver = start(peer_command(receive_one), MANYCORE_DIRECTORY=str(directories[0]))
+    receiver.wait_for("^opening$")
+    wait_until(lambda: is_asleep(receiver.pid), "the receiver listens")
+    monkeypatch.setenv("MANYCORE_DIRECTORY", str(directories[1]))
+    with pytest.raises(TransportTimeoutError, match="the other side has not come"):
+        emcos.MessageSender("t", platform=platform, timeout_s=0)
+    monkeypatch.setenv("MANYCORE_DIRECTORY", f"{tmp_path}/link/")
+    with emcos.MessageSender("t", platform=platform, **WAITS) as sender:
+        assert sender.send(b"hello")
+        receiver.wait_for("^hello$")
+
+
+def test_an_unsuitable_directory_is_refused(
+    tmp_path: Path, platform: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("MANYCORE_DIRECTORY", f"{tmp_path}/missing")
+    with pytest.raises(TransportError, match=r"MessageSender 't': .* mkdir -m 700"):
+        emcos.MessageSender("t", platform=platform, timeout_s=0)

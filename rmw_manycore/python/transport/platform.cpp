@@ -8,6 +8,7 @@
 
 #include <optional>
 
+#include "platform/user_directory.hpp"
 #include "python/context.hpp"
 #include "python/transport/bindings.hpp"
 #include "python/transport/rows.hpp"
@@ -111,6 +112,7 @@ void bind_platform(nb::module_ & module) {
   module.def("platform_directory", [](const std::string & name) {
     return PlatformPaths::of(name).directory;
   });
+  module.def("platforms_place", [] { return UserDirectory::from_environment().place(); });
   module.def("clean", &clean_platform, nb::arg("name"), nb::arg("force") = false);
   module.def(
     "charge_smem", &charge, nb::arg("platform"), nb::arg("size_bytes"),
