@@ -9,8 +9,11 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
+import rclpy
 from processes import cpu_time_s, kill, receive_threads_of
-from support import IS_MANYCORE, example_command, wait_until
+from ros_support import announce, peer_node, spin_until
+from std_msgs.msg import String
+from support import IS_MANYCORE, example_command, peer_command, wait_until
 
 pytestmark = [
     pytest.mark.integration,
@@ -99,6 +102,25 @@ def test_a_node_with_the_pid_of_a_watched_one_is_reaped(platform, start):
     kill(first_process_of(listener.pid))
     wait_until(lambda: len(members(platform)) == 1, "the listener is no member any more")
     start_outside(start)  # only now: it would have reaped as well
+
+
+def test_the_discovery_range_off_keeps_a_namespace_alone(start):
+    """Both processes have pid 1, and share a domain."""
+    off = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}
+    for name in ("one", "two"):
+        start(in_namespace(*peer_command(show_nodes, name)), **off).wait_for(f"^1 {name}$")
+
+
+def show_nodes(name: str) -> None:
+    """Announce pid and nodes once messages arrive from a publisher of the own process."""
+    with peer_node(name) as node:
+        heard: list[String] = []
+        node.create_subscription(String, "chatter", heard.append, 10)
+        publisher = node.create_publisher(String, "chatter", 10)
+        publisher.publish(String())
+        spin_until(node, lambda: heard)
+        announce(f"{os.getpid()} {' '.join(node.get_node_names())}")
+        rclpy.spin(node)
 
 
 def test_watching_another_namespace_costs_nothing(platform, start, talker):

@@ -127,3 +127,22 @@ def test_workers_of_a_pool_leave_the_nodes_of_their_parent_alone(node):
         publisher.publish(String(data="beside the pool"))
         spin_until(node, lambda: received)
     assert node.get_node_names() == ["tester"]
+
+
+def test_a_child_does_not_share_the_platform_of_the_discovery_range_off(monkeypatch):
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")
+    rclpy.init()
+    node = rclpy.create_node("parent")
+
+    def look() -> None:
+        context = rclpy.Context()
+        rclpy.init(context=context)
+        own = rclpy.create_node("child", context=context)
+        assert own.get_node_names() == ["child"]
+        own.destroy_node()
+        rclpy.shutdown(context=context)
+
+    assert status_of_child(look) == 0
+    assert node.get_node_names() == ["parent"]
+    node.destroy_node()
+    rclpy.shutdown()

@@ -1,12 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "rmw/init.h"
 
-#include <unistd.h>
-
 #include <memory>
 #include <string>
 
 #include "platform/error.hpp"
+#include "platform/process_identity.hpp"
 #include "rcutils/logging_macros.h"
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
@@ -26,12 +25,22 @@ void refuse_security(const rmw_security_options_t & security) {
   }
 }
 
+/// Name of a platform that no other process joins: a pid alone is unique within one PID namespace
+/// (container) only, and is reused.
+std::string private_platform(size_t domain_id) {
+  const auto own = manycore::ProcessIdentity::own();
+  return "private-" + std::to_string(domain_id) + "-" + std::to_string(own.pid) + "-" +
+         std::to_string(own.start_time) + "-" + std::to_string(own.pid_namespace);
+}
+
 /// A platform is local to the machine, so all discovery ranges except OFF are equivalent.
 manycore::Placement placement_of(const rmw_init_options_t & options, size_t domain_id) {
   const rmw_discovery_options_t & discovery = options.discovery_options;
   manycore::Placement placement = manycore::Placement::from_environment(domain_id);
   if (discovery.automatic_discovery_range == RMW_AUTOMATIC_DISCOVERY_RANGE_OFF) {
-    placement.platform += "-private-" + std::to_string(getpid());
+    placement.platform = private_platform(domain_id);
+    placement.cluster = 1;  // cluster and core were those of the shared platform
+    placement.core.reset();
   }
   if (discovery.static_peers_count != 0) {
     RCUTILS_LOG_WARN_NAMED(
