@@ -210,7 +210,7 @@ public:
     if (child_ == 0) {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       raise(SIGSTOP);
-      const auto process = Process::join(Placement::from_environment(0));
+      const auto process = Process::join(Placement::from_environment());
       Endpoints endpoints;
       const EndpointSpec spec = spec_of(*process);
       for (size_t i = 0; i < count; ++i) {
@@ -368,7 +368,7 @@ void run(const bench::Arguments & arguments) {
   const size_t changes = arguments.number("changes");
   const size_t count = arguments.number("endpoints");
   Victim victim(changes);
-  const auto process = Process::join(Placement::from_environment(0));
+  const auto process = Process::join(Placement::from_environment());
   const EndpointSpec spec = spec_of(*process);
   Registry registry(PlatformPaths::of(process->placement().platform));
   HoldWatch holds(registry.header(), arguments.number("cpu"));

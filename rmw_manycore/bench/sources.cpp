@@ -88,7 +88,7 @@ std::vector<int64_t> resyncs(Process & process, Registry & registry, const bench
 }
 
 void run(const bench::Arguments & arguments) {
-  const auto process = Process::join(Placement::from_environment(0));
+  const auto process = Process::join(Placement::from_environment());
   Registry registry(PlatformPaths::of(process->placement().platform));
   const uint64_t bytes =
     match_bytes(*process, registry.clusters().at(1), arguments.number("publishers"));

@@ -36,7 +36,7 @@ int64_t ps_for_each(uint64_t events, Body body) {
 void run(const bench::Arguments & arguments) {
   const uint64_t events = arguments.number("events");
   const uint64_t rounds = arguments.number("rounds");
-  const auto process = Process::join(Placement::from_environment(0));
+  const auto process = Process::join(Placement::from_environment());
   EndpointSpec spec;
   spec.node = process->add_node("bench", "/", "/");
   spec.topic = "/bench";

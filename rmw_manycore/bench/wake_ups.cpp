@@ -33,7 +33,7 @@ uint32_t sum_of_epochs(const ProcessEntry & process) {
 }
 
 void run(const bench::Arguments & arguments) {
-  Registry registry(PlatformPaths::of(Placement::from_environment(0).platform));
+  Registry registry(PlatformPaths::of(Placement::from_environment().platform));
   const ProcessEntry & process = entry_of(registry, static_cast<pid_t>(arguments.number("pid")));
   const uint32_t before = sum_of_epochs(process);
   bench::announce_ready();

@@ -31,6 +31,12 @@ std::optional<uint32_t> number_from(const char * name, uint32_t least, uint32_t 
   return static_cast<uint32_t>(value);
 }
 
+/// As rcl reads it; rcl refuses a value that is not a number.
+size_t domain_from_environment() {
+  const char * const text = std::getenv("ROS_DOMAIN_ID");
+  return text == nullptr ? 0 : std::strtoul(text, nullptr, 0);
+}
+
 WaitMode wait_mode_from_environment() {
   const char * const text = std::getenv("MANYCORE_WAIT");
   if (text == nullptr || *text == 0 || std::strcmp(text, "block") == 0) {
@@ -47,13 +53,23 @@ WaitMode wait_mode_from_environment() {
 
 }  // namespace
 
-Placement Placement::from_environment(size_t domain_id) {
-  Placement placement;
+Placement Placement::from_environment(std::optional<size_t> domain_id) {
+  const size_t own_domain = domain_from_environment();
+  const size_t domain = domain_id.value_or(own_domain);
   const char * const platform = std::getenv("MANYCORE_PLATFORM");
-  placement.platform =
-    platform != nullptr && *platform != 0 ? platform : "domain-" + std::to_string(domain_id);
-  placement.cluster = number_from("MANYCORE_CLUSTER", 1, max_clusters).value_or(1);
-  placement.core = number_from("MANYCORE_CORE", 0, 1023);
+  const bool is_named = platform != nullptr && *platform != 0;
+  const uint32_t cluster = number_from("MANYCORE_CLUSTER", 1, max_clusters).value_or(1);
+  const std::optional<uint32_t> core = number_from("MANYCORE_CORE", 0, 1023);
+  Placement placement;
+  placement.platform = "domain-" + std::to_string(domain);
+  if (is_named && domain == own_domain) {
+    placement.platform = platform;
+  }
+  // Cluster and core are those of the named platform; other platforms may lack them.
+  if (!is_named || domain == own_domain) {
+    placement.cluster = cluster;
+    placement.core = core;
+  }
   placement.wait_mode = wait_mode_from_environment();
   placement.label = program_name();
   return placement;

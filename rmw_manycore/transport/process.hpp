@@ -25,9 +25,11 @@ struct Placement {
   WaitMode wait_mode = WaitMode::block;
   std::string label;  ///< shown by the tools; default: name of the program
 
-  /// Reads MANYCORE_PLATFORM, MANYCORE_CLUSTER, MANYCORE_CORE and MANYCORE_WAIT; the platform
-  /// defaults to "domain-<domain_id>". Throws Error{invalid_argument} naming the variable.
-  static Placement from_environment(size_t domain_id);
+  /// Placement in a ROS domain, by default in that of ROS_DOMAIN_ID. There MANYCORE_PLATFORM,
+  /// MANYCORE_CLUSTER and MANYCORE_CORE apply; any other domain is the platform "domain-<id>",
+  /// which the process joins on cluster 1, without a core. Also reads MANYCORE_WAIT. Throws
+  /// Error{invalid_argument} naming the variable.
+  static Placement from_environment(std::optional<size_t> domain_id = std::nullopt);
   /// Throws Error{invalid_argument} unless such a platform has this cluster and core.
   void require_on(const Profile & profile) const;
 };
@@ -35,7 +37,7 @@ struct Placement {
 /// Membership of this process in a platform. Joining creates platform, cluster and receive thread
 /// if they are missing; the last process to leave removes everything. Thread-safe.
 ///
-///   const auto process = Process::join(Placement::from_environment(0));
+///   const auto process = Process::join(Placement::from_environment());
 ///   EndpointSpec spec;
 ///   spec.node = process->add_node("talker", "/", "/");
 ///   spec.topic = "/chatter";

@@ -13,13 +13,14 @@ from rmw_manycore_py.launch.bridge import bridge_programs
 from rmw_manycore_py.launch.platform import configured_platform
 from rmw_manycore_py.launch.processes.environment import IMPLEMENTATION, program_environment
 from rmw_manycore_py.launch.processes.program import NodeProgram
-from rmw_manycore_py.mapfile.format.checks import PLACE_VARIABLES
+from rmw_manycore_py.mapfile.format.checks import NODE_VARIABLES, PLACE_VARIABLES
 from rmw_manycore_py.mapfile.format.loader import load_mapfile
 from rmw_manycore_py.mapfile.installed import find_mapfile
 from rmw_manycore_py.mapfile.launch_file import LaunchedNode, numbered
 from rmw_manycore_py.mapfile.placing.launched import is_meant
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode
 from rmw_manycore_py.mapfile.placing.resolve import resolve_places
+from rmw_manycore_py.ros.domain import is_elsewhere
 from rmw_manycore_py.ros.names import full_node_name
 
 MAPFILE_VARIABLE = "MANYCORE_MAPFILE"
@@ -91,7 +92,11 @@ class ForeignLaunch:
             for variable, value in launched.items()
             if self._before.get(variable) != value and variable not in fixed
         }
-        return program_environment({**placed.env, **asked}, launched)
+        return program_environment({**placed.env, **asked, **self.elsewhere(launched)}, launched)
+
+    def elsewhere(self, launched: Mapping[str, str]) -> dict[str, str]:
+        """Return empty place variables if launch starts a node in another ROS domain."""
+        return dict.fromkeys(NODE_VARIABLES, "") if is_elsewhere(launched, self._before) else {}
 
     @property
     def not_started(self) -> list[str]:

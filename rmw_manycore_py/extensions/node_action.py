@@ -11,7 +11,7 @@ from __future__ import annotations
 import atexit
 import os
 import shutil
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -56,6 +56,7 @@ class ManycoreNodeAction(NodeActionExtension):  # type: ignore[misc]
             if placed is None:
                 full_name = full_node_name(namespace, name or executable)
                 _logger().warning(f"{full_name} is not in the mapfile: it is not pinned")
+                _start_with(node_action, [], lambda given: {**given, **launch.elsewhere(given)})
             else:
                 _place(launch, node_action, placed)
         return [], ros_specific_arguments
@@ -75,21 +76,34 @@ def _names(
 
 def _place(launch: ForeignLaunch, action: Node, placed: PlacedNode) -> None:
     """Pin the action's process to its host CPU, and set the environment of its core."""
-    description = action.process_description
-    prepare = description.prepare
-
-    def prepare_and_place(context: LaunchContext, action: Any) -> None:
-        prepare(context, action)
-        # Goes before any launch prefix, so that debuggers attach to the node itself.
-        description.final_cmd[:0] = _pinned([placed.host_cpu])
-        environment = launch.environment(placed, description.final_env)
-        description.final_env.clear()
-        description.final_env.update(environment)
-
-    description.prepare = prepare_and_place
+    _start_with(
+        action,
+        _pinned([placed.host_cpu]),
+        lambda given: launch.environment(placed, given),
+    )
     _logger().info(
         f"{placed.name}: cluster {placed.cluster} core {placed.core} -> host CPU {placed.host_cpu}"
     )
+
+
+def _start_with(
+    action: Node,
+    prefix: Sequence[str],
+    environment_of: Callable[[Mapping[str, str]], Mapping[str, str]],
+) -> None:
+    """Start the action's process with a prefix, in an environment made from that of launch."""
+    description = action.process_description
+    prepare = description.prepare
+
+    def prepare_and_change(context: LaunchContext, action: Any) -> None:
+        prepare(context, action)
+        # Goes before any launch prefix, so that debuggers attach to the node itself.
+        description.final_cmd[:0] = prefix
+        environment = environment_of(dict(description.final_env))
+        description.final_env.clear()
+        description.final_env.update(environment)
+
+    description.prepare = prepare_and_change
 
 
 def _pinned(host_cpus: Sequence[int]) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Mapping
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 
@@ -28,17 +29,33 @@ def ros_domain() -> int:
     return int(text)
 
 
-def default_platform(domain: int | str | None = None) -> str:
+def default_platform(domain: int | None = None) -> str:
     """Return the platform of a process without a mapfile or option that names one.
 
-    :param domain: ROS domain, if known by rcl; default: ROS_DOMAIN_ID.
+    The same as Placement::from_environment in rmw_manycore/transport/placement.cpp.
+
+    :param domain: ROS domain of a context; default: ROS_DOMAIN_ID, the one that MANYCORE_PLATFORM
+        stands for.
     :raises ManycoreError: if MANYCORE_PLATFORM is not a valid platform name.
     """
-    if named := os.environ.get("MANYCORE_PLATFORM"):
+    own = _domain_of(os.environ)
+    named = os.environ.get("MANYCORE_PLATFORM")
+    if named and (domain is None or str(domain) == own):
         return checked_platform(named, "MANYCORE_PLATFORM")
-    if domain is None:
-        domain = os.environ.get("ROS_DOMAIN_ID") or "0"
-    return f"domain-{domain}"
+    return f"domain-{own if domain is None else domain}"
+
+
+def is_elsewhere(node: Mapping[str, str], base: Mapping[str, str] = os.environ) -> bool:
+    """Return whether a node's variables move it to another ROS domain than that of its run.
+
+    :param node: variables that the node has beyond `base`, or all of them.
+    """
+    return _domain_of({**base, **node}) != _domain_of(base)
+
+
+def _domain_of(environment: Mapping[str, str]) -> str:
+    text = environment.get("ROS_DOMAIN_ID") or "0"
+    return str(int(text)) if text.isdecimal() else text
 
 
 def checked_platform(name: str, place: str) -> str:

@@ -83,6 +83,17 @@ def test_the_launch_file_decides_what_the_mapfile_does_not_but_the_place(begin) 
     assert [environment[name] for name in names] == ["map", "spin", "2", "3"]
 
 
+def test_nodes_of_another_domain_are_not_on_the_platform(begin, platform: str) -> None:
+    launch = begin("  one: {cluster: 2}\n")
+    placed = launch.place("one", "/", "talker")
+    other = {**os.environ, "ROS_DOMAIN_ID": "200"}
+    names = ("MANYCORE_PLATFORM", "MANYCORE_CLUSTER", "MANYCORE_CORE")
+    assert [launch.environment(placed, other)[name] for name in names] == ["", "", ""]
+    assert launch.elsewhere(other) == dict.fromkeys(names, "")
+    assert launch.environment(placed, dict(os.environ))["MANYCORE_PLATFORM"] == platform
+    assert launch.elsewhere(os.environ) == {}
+
+
 def test_errors_say_what_is_expected(begin, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(ManycoreError, match="MANYCORE_MAPFILE: expected a mapfile, found 'no'"):
         ForeignLaunch("no")

@@ -308,7 +308,7 @@ TEST_CASE("environment variables are checked, and named when they are invalid") 
   };
   for (const auto & [name, value] : wrong) {
     setenv(name, value, 1);
-    const Refusal refusal = refusal_of([] { Placement::from_environment(0); });
+    const Refusal refusal = refusal_of([] { Placement::from_environment(); });
     unsetenv(name);
     CHECK(refusal.code == ErrorCode::invalid_argument);
     CHECK(refusal.says(std::string(name) + "='" + value + "'"));
@@ -322,6 +322,30 @@ TEST_CASE("environment variables are checked, and named when they are invalid") 
   CHECK(placement.cluster == 3);
   CHECK_FALSE(placement.core);
   CHECK(placement.wait_mode == WaitMode::adaptive);
+}
+
+TEST_CASE("the named platform is that of one domain; others are not placed on it") {
+  setenv("ROS_DOMAIN_ID", "7", 1);
+  setenv("MANYCORE_CLUSTER", "3", 1);
+  setenv("MANYCORE_CORE", "2", 1);
+  CHECK(Placement::from_environment().platform == "domain-7");
+  CHECK(Placement::from_environment(8).cluster == 3);
+  setenv("MANYCORE_PLATFORM", "robot", 1);
+  const Placement named = Placement::from_environment();
+  const Placement same = Placement::from_environment(7);
+  const Placement other = Placement::from_environment(8);
+  for (const char * name : {"ROS_DOMAIN_ID", "MANYCORE_CLUSTER", "MANYCORE_CORE"}) {
+    unsetenv(name);
+  }
+  CHECK(Placement::from_environment(0).platform == "robot");
+  unsetenv("MANYCORE_PLATFORM");
+  CHECK(named.platform == "robot");
+  CHECK(same.platform == "robot");
+  CHECK(same.cluster == 3);
+  CHECK(same.core == 2u);
+  CHECK(other.platform == "domain-8");
+  CHECK(other.cluster == 1);
+  CHECK_FALSE(other.core);
 }
 
 TEST_CASE("a user directory open to other users, or not a directory, is refused") {

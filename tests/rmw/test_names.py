@@ -9,6 +9,7 @@ import pytest
 import rclpy
 from forked import forked_example
 from rcl_interfaces.msg import Log
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import String
@@ -98,6 +99,32 @@ def test_domains_are_apart(domains, start_peer, monkeypatch, same):
         assert node.get_node_names() == ["tester"]
     node.destroy_node()
     rclpy.shutdown()
+
+
+def test_a_context_of_another_domain_is_not_on_the_named_platform(node, domains, start_peer):
+    """MANYCORE_PLATFORM, which `manycore run` sets, stands for the domain of the run."""
+    heard = {"own": [], "other": []}
+    context = rclpy.Context()
+    rclpy.init(context=context, domain_id=domains[0])
+    other = rclpy.create_node("other", context=context)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(other)
+    node.create_subscription(String, "chatter", heard["own"].append, 10)
+    other.create_subscription(String, "chatter", heard["other"].append, 10)
+    publisher = node.create_publisher(String, "chatter", 10)
+    start_peer(talk_to_itself).wait_for("published")
+    spin_until(node, lambda: heard["own"])
+    executor.spin_once(timeout_sec=0.1)
+    assert heard["other"] == []
+    assert publisher.get_subscription_count() == 2
+    assert sorted(node.get_node_names()) == ["peer", "tester"]
+    assert other.get_node_names() == ["other"]
+    start_peer(talk_in_domain, domains[0]).wait_for("published")
+    while not heard["other"]:
+        executor.spin_once(timeout_sec=0.1)
+    executor.shutdown()
+    other.destroy_node()
+    rclpy.shutdown(context=context)
 
 
 def talk_in_domain(domain: int) -> None:

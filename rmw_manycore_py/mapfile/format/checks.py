@@ -13,10 +13,8 @@ from rmw_manycore_py.mapfile.format.model import NodeSection
 from rmw_manycore_py.topology import Core
 
 # Set from the placement; overriding them would move a node elsewhere.
-PLACE_VARIABLES = (
-    *("MANYCORE_DIRECTORY", "MANYCORE_PLATFORM"),
-    *("MANYCORE_CLUSTER", "MANYCORE_CORE"),
-)
+NODE_VARIABLES = ("MANYCORE_PLATFORM", "MANYCORE_CLUSTER", "MANYCORE_CORE")
+PLACE_VARIABLES = ("MANYCORE_DIRECTORY", *NODE_VARIABLES)
 WAYS_TO_START = ("module", "script", "executable", "command")
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode
 from rmw_manycore_py.mapfile.programs.source import scan
+from rmw_manycore_py.ros.domain import is_elsewhere
 from rmw_manycore_py.ros.names import resolve_topic
 from rmw_manycore_py.ros.patterns import is_pattern
 from rmw_manycore_py.scheduling import refusal
@@ -42,6 +43,17 @@ def refused_scheduling(nodes: Sequence[PlacedNode]) -> Iterator[str]:
     for node in nodes:
         if node.scheduling is not None and (reason := refusal(node.scheduling)):
             yield f"'{node.name}' cannot run here: {reason}"
+
+
+def elsewhere(platform: str, nodes: Sequence[PlacedNode]) -> Iterator[str]:
+    """Yield nodes that their ROS domain keeps apart from the platform."""
+    for node in nodes:
+        if is_elsewhere(node.env):
+            domain = node.env["ROS_DOMAIN_ID"]
+            yield (
+                f"'{node.name}' has ROS_DOMAIN_ID={domain}: it meets the nodes of that domain, "
+                f"and none of platform '{platform}'"
+            )
 
 
 def _says_all(start: NodeStart) -> bool:

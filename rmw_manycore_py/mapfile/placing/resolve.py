@@ -17,7 +17,7 @@ from rmw_manycore_py.mapfile.placing.crossings import bridge_placement
 from rmw_manycore_py.mapfile.placing.foreign import foreign_starts
 from rmw_manycore_py.mapfile.placing.imports import check_imports, notices_of_imports
 from rmw_manycore_py.mapfile.placing.launched import launch_rules
-from rmw_manycore_py.mapfile.placing.notices import refused_scheduling, unpublished
+from rmw_manycore_py.mapfile.placing.notices import elsewhere, refused_scheduling, unpublished
 from rmw_manycore_py.mapfile.placing.placement import (
     LaunchRules,
     PlacedNode,
@@ -35,7 +35,7 @@ from rmw_manycore_py.mapfile.placing.topics import (
 from rmw_manycore_py.mapfile.placing.workers import worker_cores
 from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
 from rmw_manycore_py.ros.ament import canonical_type
-from rmw_manycore_py.ros.domain import default_platform
+from rmw_manycore_py.ros.domain import default_platform, is_elsewhere
 from rmw_manycore_py.ros.names import full_node_name, resolve_topic
 from rmw_manycore_py.scheduling import Scheduling
 from rmw_manycore_py.topology import (
@@ -115,6 +115,7 @@ def _placement(
             *(*of_rules, *of_imports),
             *unpublished(mapfile, starts, nodes),
             *refused_scheduling(nodes),
+            *elsewhere(platform_name(mapfile), nodes),
         ),
     )
 
@@ -241,6 +242,8 @@ def _environment(mapfile: Mapfile, name: str, core: Core, start: NodeStart) -> d
         env["MALLOC_TRIM_THRESHOLD_"] = env["MALLOC_MMAP_THRESHOLD_"] = _MALLOC_THRESHOLD
     # A launch file may set all variables except those of the placement.
     asked = {name: value for name, value in start.env.items() if name not in PLACE_VARIABLES}
+    if is_elsewhere(asked):  # empty: the environment of `manycore run` may set them
+        place = dict.fromkeys(place, "")
     return {**env, **asked, **place}
 
 

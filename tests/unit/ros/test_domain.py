@@ -7,7 +7,7 @@ import pytest
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ros.domain import checked_platform, default_platform
+from rmw_manycore_py.ros.domain import checked_platform, default_platform, is_elsewhere
 
 pytestmark = pytest.mark.unit
 
@@ -31,9 +31,17 @@ def test_a_domain_that_rcl_was_given_wins_over_the_environment() -> None:
     assert default_platform(9) == "domain-9"
 
 
-def test_a_named_platform_wins_over_every_domain(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_named_platform_is_that_of_one_domain(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MANYCORE_PLATFORM", "robot")
-    assert (default_platform(), default_platform(9)) == ("robot", "robot")
+    assert [default_platform(domain) for domain in (None, 7, 9)] == ["robot", "robot", "domain-9"]
+    monkeypatch.delenv("ROS_DOMAIN_ID")
+    assert [default_platform(domain) for domain in (0, 7)] == ["robot", "domain-7"]
+
+
+@pytest.mark.parametrize(("domain", "expected"), [("7", False), ("07", False), ("8", True)])
+def test_a_node_with_another_domain_than_its_run_is_elsewhere(domain: str, expected: bool) -> None:
+    assert is_elsewhere({"ROS_DOMAIN_ID": domain}) is expected
+    assert is_elsewhere({"A": "b"}) is False
 
 
 NO_NAMES = (

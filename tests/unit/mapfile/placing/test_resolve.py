@@ -77,6 +77,24 @@ def test_a_node_is_told_its_place(resolved: Check) -> None:
     }
 
 
+def test_a_node_of_another_domain_is_not_on_the_platform(
+    resolved: Check, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    text = (
+        "platform: {name: chip}\nnodes:\n"
+        "  a: {cluster: 1, script: talker.py, env: {ROS_DOMAIN_ID: 7}}\n"
+        "  b: {cluster: 1, script: talker.py, env: {ROS_DOMAIN_ID: 8}}\n"
+    )
+    placement = resolved(text)
+    assert [node.env["MANYCORE_PLATFORM"] for node in placement.nodes] == ["chip", ""]
+    assert [node.env["MANYCORE_CLUSTER"] for node in placement.nodes] == ["1", ""]
+    (notice,) = [text for text in placement.notices if "ROS_DOMAIN_ID" in text]
+    assert notice == (
+        "'b' has ROS_DOMAIN_ID=8: it meets the nodes of that domain, and none of platform 'chip'"
+    )
+
+
 def test_malloc_tuning_can_be_switched_off(resolved: Check) -> None:
     text = "malloc_tuning: false\nnodes:\n  t: {cluster: 1, script: talker.py}\n"
     assert not [key for key in resolved(text).nodes[0].env if key.startswith("MALLOC")]
