@@ -13,6 +13,7 @@
 
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
+#include "platform/private_directory.hpp"
 
 namespace manycore {
 namespace {
@@ -22,7 +23,7 @@ constexpr int pipe_capacity_bytes = 1 << 20;
 
 LastingDescriptor open_end(const std::string & path, int more_flags) {
   const int flags = O_RDWR | O_CLOEXEC | O_NOFOLLOW | more_flags;
-  FileDescriptor fd(::open(path.c_str(), flags));
+  FileDescriptor fd = open_private_file(path, flags);
   if (!fd) {
     throw_errno("cannot open " + path);
   }

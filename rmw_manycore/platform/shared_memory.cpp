@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "platform/error.hpp"
+#include "platform/private_directory.hpp"
 
 namespace manycore {
 namespace {
@@ -55,7 +56,7 @@ void SharedMemory::unmap() noexcept {
 }
 
 SharedMemory SharedMemory::create(const std::string & path, size_t size_bytes) {
-  FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  FileDescriptor fd = open_private_file(path, O_RDWR | O_CREAT | O_EXCL, 0600);
   if (!fd) {
     throw_errno("cannot create " + path);
   }
@@ -66,16 +67,21 @@ SharedMemory SharedMemory::create(const std::string & path, size_t size_bytes) {
 }
 
 SharedMemory SharedMemory::open(const std::string & path, size_t min_size_bytes) {
-  return open(path, min_size_bytes, O_NOFOLLOW);
+  constexpr int flags = O_RDWR | O_CLOEXEC | O_NOFOLLOW;
+  return map(open_private_file(path, flags), path, min_size_bytes, flags);
 }
 
 SharedMemory SharedMemory::attach(const std::string & shared_path) {
-  return open(shared_path, 1, 0);  // the path is a symbolic link in /proc
+  constexpr int flags = O_RDWR | O_CLOEXEC;  // the path is a symbolic link in /proc
+  FileDescriptor fd(::open(shared_path.c_str(), flags));
+  if (fd) {
+    require_own_file(fd, shared_path);
+  }
+  return map(std::move(fd), shared_path, 1, flags);
 }
 
-SharedMemory SharedMemory::open(const std::string & path, size_t min_size_bytes, int more_flags) {
-  const int flags = O_RDWR | O_CLOEXEC | more_flags;
-  FileDescriptor fd(::open(path.c_str(), flags));
+SharedMemory SharedMemory::map(
+  FileDescriptor fd, const std::string & path, size_t min_size_bytes, int flags) {
   if (!fd) {
     throw_errno("cannot open " + path);
   }

@@ -26,16 +26,17 @@ public:
   SharedMemory & operator=(SharedMemory && other) noexcept;
   ~SharedMemory();
 
-  /// Creates `path` with mode 0600 and `size_bytes`, nothing reserved. The file must not exist.
+  /// Creates `path` with mode 0600 and `size_bytes`, nothing reserved. The file must not exist, and
+  /// its directory be private to this user, as for open().
   static SharedMemory create(const std::string & path, size_t size_bytes);
-  /// Maps an existing file of this user. Throws Error{corrupt} if it is smaller than
-  /// `min_size_bytes`.
+  /// Maps an existing file. Throws Error{permission} if file or directory are not private to this
+  /// user, Error{corrupt} if the file is smaller than `min_size_bytes`.
   static SharedMemory open(const std::string & path, size_t min_size_bytes);
   /// Memory without a file, completely reserved; it is freed with the last process that maps it.
   /// `label` is shown in /proc/<pid>/maps. Other processes attach() to its shared_path().
   static SharedMemory anonymous(const std::string & label, size_t size_bytes);
 
-  /// Maps memory that another process created with anonymous(), by its shared_path().
+  /// Maps memory that another process of this user created with anonymous(), by its shared_path().
   static SharedMemory attach(const std::string & shared_path);
 
   std::byte * data() const noexcept { return data_; }
@@ -65,7 +66,9 @@ public:
   void release(uint64_t offset, uint64_t length) const noexcept;
 
 private:
-  static SharedMemory open(const std::string & path, size_t min_size_bytes, int flags);
+  /// `flags` reopen `path`. Throws the errno of open() if `fd` is invalid.
+  static SharedMemory map(
+    FileDescriptor fd, const std::string & path, size_t min_size_bytes, int flags);
   SharedMemory(FileDescriptor fd, const std::string & path, size_t size_bytes, int flags);
   void unmap() noexcept;
   /// Returns an errno.

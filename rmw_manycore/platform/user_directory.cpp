@@ -13,6 +13,7 @@
 
 #include "platform/error.hpp"
 #include "platform/file_descriptor.hpp"
+#include "platform/private_directory.hpp"
 
 namespace manycore {
 namespace {
@@ -26,7 +27,8 @@ void check_chosen(const std::string & path) {
   if (path[0] != '/') {
     throw Error(ErrorCode::invalid_argument, quoted(path) + "is not an absolute path");
   }
-  if (stat(path.c_str(), &status) != 0) {
+  const FileDescriptor fd(open(path.c_str(), O_PATH | O_CLOEXEC));
+  if (!fd || fstat(fd.get(), &status) != 0) {
     throw Error(
       ErrorCode::invalid_argument, quoted(path) + "cannot be examined (" + std::strerror(errno) +
                                      "); create it: mkdir -m 700 " + path);
@@ -76,7 +78,9 @@ struct Probe {
 UserDirectory UserDirectory::from_environment() {
   const char * const chosen = std::getenv(variable);
   if (chosen == nullptr || *chosen == 0) {
-    return {"/dev/shm/manycore-" + std::to_string(geteuid()), false};
+    const std::string path = "/dev/shm/manycore-" + std::to_string(geteuid());
+    PrivateDirectory::open(path);  // refuses what another user put there
+    return {path, false};
   }
   std::string path = chosen;
   check_chosen(path);

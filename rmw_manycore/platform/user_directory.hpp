@@ -11,8 +11,7 @@ struct UserDirectory {
   bool is_chosen = false;  ///< by MANYCORE_DIRECTORY: the user creates and removes it
 
   /// MANYCORE_DIRECTORY, or /dev/shm/manycore-<uid>, which need not exist. Throws
-  /// Error{invalid_argument|permission} if MANYCORE_DIRECTORY is not a private directory of this
-  /// user.
+  /// Error{invalid_argument|permission} if the directory is not private to this user.
   static UserDirectory from_environment();
   /// An existing directory on the same file system.
   std::string place() const { return is_chosen ? path : "/dev/shm"; }

@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
 import sys
 
 import pytest
+from own_shm import can_mount, own_shm_command
 from support import (
     IS_MANYCORE,
     MAPFILES,
@@ -20,20 +19,7 @@ from support import (
     unique_platform,
 )
 
-SMALL = 'mount -t tmpfs -o size={size_mib}m,mode=1777 tmpfs /dev/shm && exec "$@"'
 SIZE_NEEDED = re.compile(r"\b\d[\d,.]* ?(bytes|[KMG]iB)")
-
-
-def small_shm_command(size_mib: int, command: list[str]) -> list[str]:
-    """Return a command that runs with a /dev/shm of its own."""
-    script = SMALL.format(size_mib=size_mib)
-    return ["unshare", "--mount", "sh", "-c", script, "sh", *map(str, command)]
-
-
-def can_mount() -> bool:
-    if os.getuid() != 0:
-        return False
-    return subprocess.run(small_shm_command(1, ["true"]), capture_output=True).returncode == 0
 
 
 pytestmark = [
@@ -49,7 +35,7 @@ def start_small():
 
     def start_small(size_mib: int, command: list[str]) -> Program:
         env = environment(unique_platform())
-        programs.append(Program(small_shm_command(size_mib, command), env))
+        programs.append(Program(own_shm_command(size_mib, command), env))
         return programs[-1]
 
     yield start_small

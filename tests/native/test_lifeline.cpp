@@ -25,14 +25,14 @@ constexpr uint32_t line = 2;
 
 /// A file of four lifelines.
 struct File {
-  File() {
-    close(mkstemp(path.data()));
+  File() { Lifelines::create(path, 4); }
+  ~File() {
     unlink(path.c_str());
-    Lifelines::create(path, 4);
+    rmdir(directory.c_str());
   }
-  ~File() { unlink(path.c_str()); }
 
-  std::string path = "/dev/shm/manycore-lifelines-XXXXXX";
+  std::string directory = "/dev/shm/manycore-lifelines-XXXXXX";
+  std::string path = std::string(mkdtemp(directory.data())) + "/alive";
 };
 
 /// Holds a line until it receives a command.

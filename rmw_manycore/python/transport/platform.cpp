@@ -8,6 +8,7 @@
 
 #include <optional>
 
+#include "platform/private_directory.hpp"
 #include "platform/user_directory.hpp"
 #include "python/context.hpp"
 #include "python/transport/bindings.hpp"
@@ -100,6 +101,13 @@ private:
   mutable std::optional<View> view_;
 };
 
+/// Its files are opened by Python: refuses a directory that is not private to this user.
+std::string directory_of(const std::string & platform) {
+  const std::string directory = PlatformPaths::of(platform).directory;
+  PrivateDirectory::open(directory);
+  return directory;
+}
+
 void charge(const std::string & platform, uint64_t size_bytes) {
   Registry registry(PlatformPaths::of(platform));
   charge_smem(registry, ProcessIdentity::own(), size_bytes);
@@ -109,9 +117,7 @@ void charge(const std::string & platform, uint64_t size_bytes) {
 
 void bind_platform(nb::module_ & module) {
   module.def("platforms", &platform_names);
-  module.def("platform_directory", [](const std::string & name) {
-    return PlatformPaths::of(name).directory;
-  });
+  module.def("platform_directory", &directory_of);
   module.def("platforms_place", [] { return UserDirectory::from_environment().place(); });
   module.def("clean", &clean_platform, nb::arg("name"), nb::arg("force") = false);
   module.def(

@@ -1,12 +1,10 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/lifecycle/configurator.hpp"
 
-#include <dirent.h>
-
 #include <algorithm>
-#include <cerrno>
 
 #include "platform/error.hpp"
+#include "platform/private_directory.hpp"
 
 namespace manycore {
 
@@ -42,21 +40,13 @@ Configurator::~Configurator() {
 }
 
 std::vector<std::string> platform_names() {
-  const std::string directory = PlatformPaths::of("any").user_directory;
-  std::vector<std::string> names;
-  DIR * const handle = opendir(directory.c_str());
-  if (!handle) {
-    if (errno != ENOENT) {
-      throw_errno("cannot list " + directory);
-    }
-    return names;
+  const auto directory = PrivateDirectory::open(PlatformPaths::of("any").user_directory);
+  if (!directory) {
+    return {};
   }
-  while (const dirent * const entry = readdir(handle)) {
-    if (entry->d_type == DT_DIR && PlatformPaths::is_name(entry->d_name)) {
-      names.emplace_back(entry->d_name);
-    }
-  }
-  closedir(handle);
+  std::vector<std::string> names = directory->directories();
+  const auto is_other = [](const std::string & name) { return !PlatformPaths::is_name(name); };
+  names.erase(std::remove_if(names.begin(), names.end(), is_other), names.end());
   std::sort(names.begin(), names.end());
   return names;
 }

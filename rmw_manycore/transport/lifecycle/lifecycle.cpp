@@ -14,6 +14,7 @@
 
 #include "platform/clock.hpp"
 #include "platform/os_process.hpp"
+#include "platform/private_directory.hpp"
 #include "platform/user_directory.hpp"
 #include "transport/matching/closing.hpp"
 #include "transport/matching/spare_blocks.hpp"
@@ -28,19 +29,7 @@ void make_private_directory(const std::string & path) {
   if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST) {
     throw_errno("cannot create " + path);
   }
-  struct stat status {};
-  if (lstat(path.c_str(), &status) != 0) {
-    if (errno == ENOENT) {
-      return;  // its last user has just removed it; the caller tries again
-    }
-    throw_errno("cannot examine " + path);
-  }
-  if (!S_ISDIR(status.st_mode) || status.st_uid != geteuid() || (status.st_mode & 077) != 0) {
-    throw Error(
-      ErrorCode::permission, path +
-                               " is not a private directory of this user; remove it (or ask its "
-                               "owner to), then try again");
-  }
+  PrivateDirectory::open(path);  // if its last user has just removed it, the caller tries again
 }
 
 std::vector<std::string> entries_of(const std::string & directory) {
@@ -238,6 +227,10 @@ void ensure_platform(
 }
 
 std::vector<std::string> remove_platform(const PlatformPaths & paths) {
+  const auto directory = PrivateDirectory::open(paths.directory);
+  if (!directory) {
+    return {};
+  }
   for (uint32_t id = 1; id <= max_clusters; ++id) {
     if (exists(paths.pipe(id))) {
       EmcosMessage message{};
@@ -250,10 +243,9 @@ std::vector<std::string> remove_platform(const PlatformPaths & paths) {
     }
   }
   std::vector<std::string> removed;
-  for (const std::string & name : entries_of(paths.directory)) {
-    const std::string path = paths.directory + "/" + name;
-    if (unlink(path.c_str()) == 0) {
-      removed.push_back(path);
+  for (const std::string & name : directory->entries()) {
+    if (directory->remove(name)) {
+      removed.push_back(paths.directory + "/" + name);
     }
   }
   rmdir(paths.directory.c_str());
