@@ -14,7 +14,6 @@ import json
 import os
 import shutil
 import socket
-import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -22,12 +21,11 @@ from pathlib import Path
 from typing import Any
 
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.runs.private import check_own, check_private, make_private, write_private
 
 STATE_VARIABLE = "MANYCORE_STATE"
 LOGS = "log"
 _LOCK, _CONTROL, _INFO = "lock", "control", "run.json"
-_PRIVATE = 0o700
-_OTHERS = 0o077
 
 
 def state_directory() -> Path:
@@ -116,15 +114,21 @@ class RunDirectory:
 
 
 def runs_of(platform: str) -> list[RunDirectory]:
-    """Return the runs of a platform in order, including ended ones."""
+    """Return the runs of a platform in order, including ended ones.
+
+    :raises ManycoreError: if a directory that holds them belongs to another user.
+    """
+    check_own(state_directory())
     return _runs_in(runs_directory() / platform)
 
 
 def all_runs() -> list[RunDirectory]:
     """Return the runs of all platforms."""
-    with suppress(OSError):
-        return [run for entry in sorted(runs_directory().iterdir()) for run in _runs_in(entry)]
-    return []
+    check_own(state_directory())
+    platforms: list[str] = []
+    with suppress(OSError), os.scandir(runs_directory()) as entries:
+        platforms = sorted(one.path for one in entries if one.is_dir(follow_symlinks=False))
+    return [run for platform in platforms for run in _runs_in(Path(platform))]
 
 
 def remove_ended(platform: str | None = None) -> list[Path]:
@@ -149,8 +153,7 @@ def new_run(platform: str, info: Mapping[str, Any], joins: bool) -> Iterator[Own
     :raises ManycoreError: if it would not be private, or another run holds the platform.
     """
     directory = runs_directory() / platform
-    directory.mkdir(_PRIVATE, parents=True, exist_ok=True)
-    _check_private(directory)
+    make_private(directory, below=state_directory())
     with _locked(directory / _LOCK):
         runs = _runs_in(directory)
         if not joins:
@@ -159,13 +162,13 @@ def new_run(platform: str, info: Mapping[str, Any], joins: bool) -> Iterator[Own
                 shutil.rmtree(ended.path, ignore_errors=True)
             runs = []
         path = directory / str(1 + max((run.number for run in runs), default=0))
-        path.mkdir(_PRIVATE)
+        path.mkdir(0o700)
         lock = _open_lock(path / _LOCK)
         fcntl.flock(lock, fcntl.LOCK_EX)
     try:
         with _listener(path) as listener:
-            (path / LOGS).mkdir(_PRIVATE)
-            (path / _INFO).write_text(json.dumps({"pid": os.getpid(), **info}))
+            (path / LOGS).mkdir(0o700)
+            write_private(path / _INFO, json.dumps({"pid": os.getpid(), **info}))
             yield OwnRun(RunDirectory(path), listener)
     finally:
         with suppress(OSError):
@@ -194,20 +197,11 @@ def _check_free(platform: str, runs: list[RunDirectory]) -> None:
 
 def _runs_in(directory: Path) -> list[RunDirectory]:
     try:
+        check_private(directory)
         entries = [entry for entry in directory.iterdir() if entry.name.isdecimal()]
     except OSError:
         return []
     return [RunDirectory(entry) for entry in sorted(entries, key=lambda entry: int(entry.name))]
-
-
-def _check_private(directory: Path) -> None:
-    status = directory.lstat()
-    mode = stat.S_IMODE(status.st_mode)
-    if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.geteuid() or mode & _OTHERS:
-        raise ManycoreError(
-            f"{directory}: expected a directory of this user, closed to others, found owner "
-            f"{status.st_uid}, mode {mode:o}; remove it, or: chmod 700 {directory}"
-        )
 
 
 @contextmanager

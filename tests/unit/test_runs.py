@@ -7,13 +7,14 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.runs import log_file
-from rmw_manycore_py.runs.directory import RunDirectory, new_run, remove_ended, runs_of
+from rmw_manycore_py.runs.directory import RunDirectory, all_runs, new_run, remove_ended, runs_of
 from rmw_manycore_py.runs.lines import MAX_LINE_BYTES, LineBuffer, encoded
 from rmw_manycore_py.runs.log_file import LogFile, log_path, share_of
 from rmw_manycore_py.runs.log_reader import NodeLog, in_order
@@ -189,3 +190,65 @@ def test_messages_are_cut_at_lines() -> None:
 def test_the_log_of_a_node_is_one_file(tmp_path: Path) -> None:
     assert log_path(tmp_path, "/a/b").name == "a.b.log"
     assert os.fspath(log_path(tmp_path, "(bridge inward)")).endswith("(bridge inward).log")
+
+
+def test_no_other_user_can_write_what_a_run_writes(state: Path) -> None:
+    before = os.umask(0)
+    try:
+        with new_run("platform", {"nodes": ["a"]}, joins=False) as own:
+            LogFile(own.directory.logs, "a", 4000).write("x")
+            modes = {
+                str(path.relative_to(state)): path.stat().st_mode & 0o777
+                for path in (state, *state.rglob("*"))
+            }
+    finally:
+        os.umask(before)
+    assert {name for name, mode in modes.items() if mode & 0o077} == set()
+    assert "runs/platform/1/run.json" in modes
+    assert "runs/platform/1/log/a.log" in modes
+
+
+def use_of_runs() -> list[Callable[[], object]]:
+    return [
+        lambda: new_run("platform", {}, joins=False).__enter__(),
+        lambda: runs_of("platform"),
+        all_runs,
+        remove_ended,
+    ]
+
+
+@pytest.mark.parametrize("use", range(4))
+@pytest.mark.parametrize("place", ["state", "state/runs/platform"])
+@pytest.mark.parametrize("how", ["open", "owner"])
+def test_directories_of_other_users_are_refused(
+    state: Path, tmp_path: Path, use: int, place: str, how: str
+) -> None:
+    (tmp_path / place).mkdir(0o700, parents=True)
+    if how == "open":
+        (tmp_path / place).chmod(0o777)
+    elif os.geteuid() == 0:
+        os.chown(tmp_path / place, 12345, 12345)
+    else:
+        pytest.skip("needs root")
+    with pytest.raises(ManycoreError, match=f"{place}: expected a directory of this user"):
+        use_of_runs()[use]()
+    assert list(state.rglob("run.json")) == []
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="needs root")
+def test_no_state_is_kept_in_the_directory_of_another_user(state: Path, tmp_path: Path) -> None:
+    os.chown(tmp_path, 12345, 12345)
+    with pytest.raises(ManycoreError, match="found owner 12345"):
+        new_run("platform", {}, joins=False).__enter__()
+    assert not state.exists()
+
+
+def test_links_between_runs_are_not_followed(state: Path, tmp_path: Path) -> None:
+    (tmp_path / "elsewhere" / "1").mkdir(0o700, parents=True)
+    (state / "runs").mkdir(parents=True)
+    (state / "runs" / "platform").symlink_to(tmp_path / "elsewhere")
+    assert all_runs() == []
+    with pytest.raises(ManycoreError, match="expected a directory of this user"):
+        runs_of("platform")
+    assert remove_ended() == []
+    assert (tmp_path / "elsewhere" / "1").exists()
