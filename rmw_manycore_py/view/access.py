@@ -1,13 +1,15 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Access control of the page: token in the link, local address, same origin."""
+"""Access control of the page: own user, token in the link, local address, same origin."""
 
 from __future__ import annotations
 
 import hmac
+import os
 from collections.abc import Awaitable, Callable
 
 from aiohttp import web
 
+from rmw_manycore_py.view.client_user import user_of_client
 from rmw_manycore_py.view.listener import ADDRESS, Listener
 
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
@@ -50,6 +52,8 @@ class Access:
         if request.headers.get("Host") not in self._hosts:
             # DNS rebinding: a foreign page resolves its own name to this address.
             return "manycore view answers to 127.0.0.1 and localhost only"
+        if not _is_of_this_user(request):
+            return "manycore view answers to the user who started it only"
         origin = request.headers.get("Origin")
         must_have_one = request.method != "GET" or "Upgrade" in request.headers
         if origin not in self._origins and (origin is not None or must_have_one):
@@ -69,3 +73,12 @@ async def _handled(request: web.Request, handler: Handler) -> web.StreamResponse
         raise
     except OSError as error:
         return web.Response(status=404, text=error.strerror)
+
+
+def _is_of_this_user(request: web.Request) -> bool:
+    """Return whether the browser, or a relay of the system such as that of WSL, is this user's."""
+    transport = request.transport
+    if transport is None:
+        return False
+    ends = (transport.get_extra_info("peername"), transport.get_extra_info("sockname"))
+    return None not in ends and user_of_client(*ends) in (os.geteuid(), 0)

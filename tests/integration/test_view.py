@@ -7,6 +7,8 @@ import json
 import os
 import shutil
 import signal
+import socket
+import subprocess
 import sys
 import urllib.error
 import urllib.request
@@ -15,10 +17,11 @@ from contextlib import closing
 
 import pytest
 from forked import forked_example, forked_manycore
-from support import IS_MANYCORE, PLATFORMS, leftovers, wait_until
+from support import IS_MANYCORE, PLATFORMS, TIMEOUT_S, leftovers, wait_until
 
 from rmw_manycore_py.bench.idle import wait_until_quiet, wake_ups
 from rmw_manycore_py.look.watch import Watch
+from rmw_manycore_py.view.client_user import user_of_client
 
 pytestmark = [
     pytest.mark.integration,
@@ -78,6 +81,48 @@ def test_only_its_own_page_is_answered(view, platform) -> None:
     for path in ("../server.py", "%2e%2e/server.py", "..%2fserver.py"):
         assert answer(link + f"page/{path}")[0] == 404
     assert answer(link + "trace/..%2f..%2fetc%2fpasswd")[0] == 404
+
+
+@pytest.mark.needs("setpriv", "curl")
+@pytest.mark.skipif(os.geteuid() != 0, reason="needs another user")
+def test_another_user_who_has_seen_the_link_is_refused(view) -> None:
+    """With `--open` it is an argument of the browser, which `ps` shows to all users."""
+    link = view[1]
+    origin = link.rsplit("/", 2)[0]
+    other = ["setpriv", "--reuid=12345", "--regid=12345", "--clear-groups"]
+    curl = ["curl", "-s", "-w", "%{http_code}"]
+    for words in ([link], ["-X", "POST", "-H", f"Origin: {origin}", f"{link}trace/start"]):
+        refused = subprocess.run(
+            [*other, *curl, *words], capture_output=True, text=True, timeout=TIMEOUT_S
+        )
+        assert refused.stdout == "manycore view answers to the user who started it only403"
+    assert answer(link)[0] == 200
+
+
+def test_a_request_without_its_sender_is_refused(view) -> None:
+    """The kernel forgets whose socket it was; while the server is stopped, the sender leaves."""
+    program, link = view
+    host, port = link.split("/")[2].split(":")
+    os.kill(program.pid, signal.SIGSTOP)
+    with socket.create_connection((host, int(port))) as client:
+        origin, path = f"http://{host}:{port}", f"/{link.split('/', 3)[3]}trace/start"
+        client.sendall(
+            f"POST {path} HTTP/1.1\r\nHost: {host}:{port}\r\nOrigin: {origin}\r\n\r\n".encode()
+        )
+        here = client.getsockname()
+    there = (host, int(port))
+    assert user_of_client(here, there) is None
+    os.kill(program.pid, signal.SIGCONT)
+    assert answer(link)[0] == 200
+
+
+def test_the_user_of_a_connection_is_known(view) -> None:
+    host, port = view[1].split("/")[2].split(":")
+    for family, address in ((socket.AF_INET, host), (socket.AF_INET6, f"::ffff:{host}")):
+        with socket.socket(family) as client:
+            client.connect((address, int(port)))
+            here = (host, client.getsockname()[1])
+            assert user_of_client(here, (host, int(port))) == os.geteuid()
 
 
 def test_a_port_in_use_is_named(view, start) -> None:
