@@ -17,6 +17,7 @@ import click
 
 from rmw_manycore_py.cli.common.detach_keys import DetachKeys, parse_keys
 from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.runs import living_runs, nodes_by_run
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, EXIT_FAILURE, ManycoreError
 from rmw_manycore_py.launch.events import Ended, Started, event_of
@@ -60,7 +61,7 @@ def command(node: str, restarts: bool, keys: str, platform: str) -> None:
         _raw_terminal(),
     ):
         reason, is_attached = _Session(client, inbox, detach_keys).run()
-    click.echo(f"\n{name}: {reason}", err=True)
+    echo(f"\n{name}: {reason}", err=True)
     if not is_attached:
         sys.exit(EXIT_FAILURE)
 

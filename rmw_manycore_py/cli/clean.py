@@ -7,7 +7,7 @@ import click
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common.options import examples, json_option
-from rmw_manycore_py.cli.common.printing import print_json, print_notices
+from rmw_manycore_py.cli.common.printing import echo, print_json, print_notices
 from rmw_manycore_py.cli.common.view import platform_names
 from rmw_manycore_py.emcos.memory import remove_names_of_the_dead
 from rmw_manycore_py.errors import ManycoreError
@@ -78,7 +78,7 @@ class _Cleaned:
             print_json({"removed": self.removed})
             return
         for path in self.removed:
-            click.echo(path)
+            echo(path)
         if not self.removed and not self.problems:
-            click.echo("nothing to remove", err=True)
+            echo("nothing to remove", err=True)
         print_notices(self.alive)

@@ -12,7 +12,13 @@ import click
 
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples, json_option
-from rmw_manycore_py.cli.common.printing import new_table, print_json, print_notices, print_table
+from rmw_manycore_py.cli.common.printing import (
+    echo,
+    new_table,
+    print_json,
+    print_notices,
+    print_table,
+)
 from rmw_manycore_py.create import create
 from rmw_manycore_py.create.figure import (
     FILE,
@@ -77,14 +83,14 @@ def command(mapfile: Path, directory: Path, with_figure: bool, as_json: bool) ->
         return
     print_notices(report.placement.notices)
     for file in report.files:
-        click.echo(file)
-    click.echo(report.summary)
+        echo(file)
+    echo(report.summary)
     for node in report.placement.nodes:
         for rule in rules_in_words(node):
-            click.echo(f"{node.full_name}: {rule}")
+            echo(f"{node.full_name}: {rule}")
     if bridge := report.placement.bridge:
         cpus = host_cpu_text(as_host_cpu(bridge.host_cpus))
-        click.echo(f"bridge: {len(bridge.routes)} routes, host CPU {cpus}")
+        echo(f"bridge: {len(bridge.routes)} routes, host CPU {cpus}")
     if dots:
         _print_figure(dots, directory / FILE)
 
@@ -110,10 +116,10 @@ def _print_figure(dots: Sequence[Dot], file: Path) -> None:
             str(dot.written_lines),
             f"{dot.reduction:.0%}",
         )
-    click.echo()
+    echo()
     print_table(table)
-    click.echo(
+    echo(
         f"{LINE}: {by_hand()[-1]:,} lines for {MAX_NODES} nodes. "
         f"ROS-lite2 reports {PAPERS_REDUCTION:.0%} less for its set of nodes."
     )
-    click.echo(file)
+    echo(file)

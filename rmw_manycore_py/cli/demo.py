@@ -11,7 +11,7 @@ import click
 from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples
-from rmw_manycore_py.cli.common.printing import new_table, print_table
+from rmw_manycore_py.cli.common.printing import echo, new_table, print_table
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.launch.run import Mode, Run
 from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
@@ -41,7 +41,7 @@ def command(mapfile: Path, duration_s: float, as_list: bool) -> None:
         _list()
         return
     placement = resolve(load_mapfile(mapfile))
-    click.echo(f"{mapfile}: {description(mapfile)}\n")
+    echo(f"{mapfile}: {description(mapfile)}\n")
     run = Run(placement, Mode(mapfile))
     exit_status = run.run(RunPrinter(run.program_names).report, duration_s)
     if exit_status == 0:
@@ -57,10 +57,10 @@ def _list() -> None:
 
 
 def _explain(mapfile: Path, placement: Placement) -> None:
-    click.echo("\nEach node was a process of its own, pinned to the host CPU of its core:")
+    echo("\nEach node was a process of its own, pinned to the host CPU of its core:")
     for node in placement.nodes:
         place = f"cluster {node.cluster}, core {node.core}, host CPU {node.host_cpu}"
-        click.echo(f"  {node.full_name}: {place}")
+        echo(f"  {node.full_name}: {place}")
     names = {file: name for name, file in installed_mapfiles().items()}
     name = names.get(mapfile, str(mapfile))
     topic = next((topic.name for topic in placement.topics), "TOPIC")
@@ -71,8 +71,8 @@ def _explain(mapfile: Path, placement: Placement) -> None:
         "manycore top": "CPU, memory and queues",
         "manycore demo --list": "other mapfiles",
     }
-    click.echo("\nNext steps:")
+    echo("\nNext steps:")
     width = max(map(len, commands))
     for words, purpose in commands.items():
-        click.echo(f"  {words:<{width}}  {purpose}")
-    click.echo(f"A mapfile to start from: {mapfile}")
+        echo(f"  {words:<{width}}  {purpose}")
+    echo(f"A mapfile to start from: {mapfile}")

@@ -6,7 +6,7 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common.options import any_platform_option, examples, json_option
-from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table
+from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.cli.common.rows import Row
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.runs.client import Client
@@ -27,10 +27,10 @@ def command(platform: str | None, as_json: bool) -> None:
         print_json(rows)
         return
     if not rows:
-        click.echo("no run of `manycore run` or `manycore up`")
+        echo("no run of `manycore run` or `manycore up`")
     for number, row in enumerate(rows):
         if number:
-            click.echo()
+            echo()
         _show(row)
 
 
@@ -54,9 +54,9 @@ def _row(run: RunDirectory) -> Row:
 
 def _show(row: Row) -> None:
     kind = "in the background" if row["detached"] else "in a terminal"
-    click.echo(f"platform {row['platform']}: {row['mapfile']}, {kind}, pid {row['pid']}")
+    echo(f"platform {row['platform']}: {row['mapfile']}, {kind}, pid {row['pid']}")
     if "error" in row:
-        click.echo(f"  {row['error']}")
+        echo(f"  {row['error']}")
         return
     table = new_table("node", "#pid", "#cluster", "#core", "#respawns", "state")
     for node in row["nodes"]:

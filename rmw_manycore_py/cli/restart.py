@@ -9,6 +9,7 @@ import time
 import click
 
 from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.cli.common.runs import living_runs, nodes_by_run
 from rmw_manycore_py.errors import EXIT_FAILURE
@@ -77,7 +78,7 @@ class _Restart:
         elif isinstance(event, Ended | Restarting) and event.node not in self._waits_for:
             self._failed = True
             for line in event.last_lines:
-                click.echo(f"    {line}", err=True)
+                echo(f"    {line}", err=True)
         elif isinstance(event, Ended):
             self._waits_for.discard(event.node)  # the start failed
             self._failed = True

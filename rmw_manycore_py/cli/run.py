@@ -12,6 +12,7 @@ from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import OutputFile
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.cli.common.starting import prepared_run, starting_options
 from rmw_manycore_py.launch.events import Event
@@ -58,4 +59,4 @@ def command(
 
 
 def _print_json(event: Event) -> None:
-    click.echo(event.as_json())
+    echo(event.as_json())

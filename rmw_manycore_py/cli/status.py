@@ -11,7 +11,14 @@ import click
 from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.options import any_platform_option, examples, json_option
-from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table, size_text
+from rmw_manycore_py.cli.common.printing import (
+    echo,
+    escaped,
+    new_table,
+    print_json,
+    print_table,
+    size_text,
+)
 from rmw_manycore_py.cli.common.rows import Row, cluster_row, platform_row, process_row
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ros.names import node_names_by_process
@@ -86,10 +93,10 @@ def command(platform: str | None, as_json: bool) -> None:
         print_json([state.row() for state in states])
         return
     if not states:
-        click.echo("no platform is running")
+        echo("no platform is running")
     for number, state in enumerate(states):
         if number:
-            click.echo()
+            echo()
         _show(state)
 
 
@@ -103,17 +110,18 @@ def _look_at(name: str) -> PlatformState | Unreadable:
 
 def _show(state: PlatformState | Unreadable) -> None:
     if isinstance(state, Unreadable):
-        click.echo(f"platform {state.name}: {state.error}")
+        echo(f"platform {state.name}: {state.error}")
         return
     alive = "alive" if state.info.alive else "dead: `manycore clean` removes it"
-    click.echo(f"platform {state.info.name}: {alive}")
+    echo(f"platform {state.info.name}: {alive}")
     _show_clusters(state.clusters)
     _show_processes(state)
     for topic in state.transfers:
         text = transfer_text(topic.transfer, topic.priority, topic.synchronous)
-        click.echo(f"{topic.name}: transfer {text}")
+        echo(f"{topic.name}: transfer {text}")
     for loss in state.losses:
-        click.echo(f"{loss['node']} {loss['topic']}: {loss['counter']} {loss['count']}")
+        names = escaped(f"{loss['node']} {loss['topic']}")
+        echo(f"{names}: {loss['counter']} {loss['count']}")
 
 
 def _show_clusters(clusters: list[_transport.ClusterInfo]) -> None:

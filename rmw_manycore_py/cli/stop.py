@@ -10,6 +10,7 @@ import click
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.cli.common.runs import living_runs, no_run, nodes_by_run
 from rmw_manycore_py.errors import EXIT_FAILURE, ManycoreError
@@ -94,4 +95,4 @@ def _explain(platform: str) -> None:
     with translate_native_errors():
         removed = _transport.clean(platform) if platform in _transport.platforms() else []
     what = "its leftovers were removed" if removed else "nothing runs on it"
-    click.echo(f"platform {platform} is stopped: {what}")
+    echo(f"platform {platform} is stopped: {what}")

@@ -72,3 +72,37 @@ def test_a_node_that_is_no_utf_8(talker, rows, start, platform):
         program = start(manycore_command(*words, "--platform", platform))
         assert program.wait() == 0, program
         assert "\ufffd\ufffdtalker" in program.output, program
+
+
+CONTROLS = "\x1b]0;evil\x07\n[/b]\u0085\u202e"
+SHOWN = r"\x1b]0;evil\x07\n[/b]\x85\u202e"
+
+
+def test_names_reach_no_terminal_as_control_characters(talker, rows, start, platform):
+    start(example_command("listener")).wait_for("I heard")
+    overwrite_name(platform, b"talker", CONTROLS.encode())
+    overwrite_name(platform, b"/chatter", f"/{CONTROLS}".encode())
+    label = next(row["label"] for row in rows("status")[0]["processes"] if "talker" in row["label"])
+    overwrite_text(platform, label.encode(), CONTROLS.encode()[: len(label)])
+    verbs = ("status", "node list", "topic list -v", "topic list -t", "top --count 1", "doctor")
+    for verb in (*verbs, f"topic info -v /{CONTROLS}", f"node info /{CONTROLS}"):
+        words = verb.split(" ", 3 if "-v /" in verb else 2 if "info" in verb else -1)
+        option = () if verb == "doctor" else ("--platform", platform)
+        program = start(manycore_command(*words, *option))
+        program.wait()
+        assert program.output, verb
+        strange = {c for c in program.output if not c.isprintable()} - {"\n"}
+        assert (strange, "Traceback" in program.output) == (set(), False), program
+        if verb != "doctor":
+            assert SHOWN in program.output, program
+    names = [row["name"] for row in rows("topic", "list")]
+    assert f"/{CONTROLS}" in names
+
+
+def overwrite_text(platform: str, text: bytes, damaged: bytes) -> None:
+    """Overwrite a text of the registry by one that is not longer."""
+    with (PLATFORMS / platform / "registry").open("r+b") as file:
+        place = file.read().find(text + b"\0")
+        assert place >= 0
+        file.seek(place)
+        file.write(damaged.ljust(len(text), b"\0"))

@@ -15,7 +15,7 @@ from rmw_manycore_py.cli.common.options import (
     platform_option,
     types_option,
 )
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 
 
 @click.command("info", epilog=examples("manycore action info -t /fibonacci"))
@@ -30,8 +30,9 @@ def command(action: str, platform: str, as_json: bool, show_types: bool, count: 
     if as_json:
         print_json(row)
         return
-    click.echo(f"Action: {action}")
+    echo(f"Action: {action}")
     for role in ("clients", "servers"):
-        click.echo(f"Action {role}: {len(row[role])}")
+        echo(f"Action {role}: {len(row[role])}")
         for end in [] if count else row[role]:
-            click.echo(f"    {end['node']}" + (f" [{end['type']}]" if show_types else ""))
+            node, of_type = escaped(end["node"]), escaped(f" [{end['type']}]")
+            echo(f"    {node}" + (of_type if show_types else ""))

@@ -12,6 +12,7 @@ from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_text import ALL, to_yaml
 from rmw_manycore_py.cli.common.message_values import message_of, parse_values
 from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.tool_node import result_of, tool_node
 from rmw_manycore_py.cli.common.values_argument import DEFAULTS, values_argument
 from rmw_manycore_py.errors import ManycoreError
@@ -43,16 +44,16 @@ def command(
         from rclpy.action import ActionClient
 
         client = ActionClient(node, action_type, action)
-        click.echo("Waiting for an action server to become available...")
+        echo("Waiting for an action server to become available...")
         while not client.server_is_ready():
             spin_once(node)
-        click.echo(f"Sending goal:\n     {_text(request)}")
+        echo(f"Sending goal:\n     {_text(request)}")
         accepted = client.send_goal_async(request, _show_feedback if shows_feedback else None)
         handle = result_of(node, accepted, action)
         if not handle.accepted:
             raise ManycoreError("Goal was rejected.")
         try:
-            click.echo(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
+            echo(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
             _show_result(result_of(node, handle.get_result_async(), action))
         except KeyboardInterrupt:
             _cancel(node, handle, action)
@@ -63,16 +64,16 @@ def _text(message: Any) -> str:
 
 
 def _show_feedback(message: Any) -> None:
-    click.echo(f"Feedback:\n    {_text(message.feedback)}")
+    echo(f"Feedback:\n    {_text(message.feedback)}")
 
 
 def _show_result(answer: Any) -> None:
-    click.echo(f"Result:\n    {_text(answer.result)}")
-    click.echo(f"Goal finished with status: {STATUSES[answer.status]}")
+    echo(f"Result:\n    {_text(answer.result)}")
+    echo(f"Goal finished with status: {STATUSES[answer.status]}")
 
 
 def _cancel(node: Any, handle: Any, action: str) -> None:
-    click.echo("Canceling goal...")
+    echo("Canceling goal...")
     if not result_of(node, handle.cancel_goal_async(), action).goals_canceling:
         raise ManycoreError(f"{action}: the goal could not be canceled")
-    click.echo("Goal canceled.")
+    echo("Goal canceled.")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rmw_manycore_py.cli.common.options import examples, json_option
-from rmw_manycore_py.cli.common.printing import print_json, print_notices
+from rmw_manycore_py.cli.common.printing import echo, escaped, print_json, print_notices
 from rmw_manycore_py.recording.mcap_support import require_library
 
 if TYPE_CHECKING:
@@ -41,9 +41,9 @@ def command(path: Path, names_only: bool, as_json: bool) -> None:
             print_json(_row(recording))
         elif names_only:
             for name in dict.fromkeys(topic.name for topic in recording.topics):
-                click.echo(name)
+                echo(escaped(name))
         else:
-            click.echo("\n".join(_lines(recording)))
+            echo("\n".join(map(escaped, _lines(recording))))
         print_notices(recording.faults)
 
 

@@ -16,6 +16,7 @@ from rmw_manycore_py.bench.relations import Relation
 from rmw_manycore_py.bench.session import usable_cpus
 from rmw_manycore_py.bench.summary import Goal, Result, judge
 from rmw_manycore_py.cli.bench.report import Report
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.figures import load_figure
 
@@ -48,7 +49,7 @@ def answer(
         )
         report = _measure(questions, run)
     if as_json:
-        click.echo(report.as_json())
+        echo(report.as_json())
     else:
         report.print()
     if output is not None:

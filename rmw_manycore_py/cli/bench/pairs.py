@@ -13,7 +13,7 @@ from rmw_manycore_py.bench.pairs import MIN_PAIRS, compare
 from rmw_manycore_py.bench.question import PAYLOADS
 from rmw_manycore_py.bench.session import usable_cpus
 from rmw_manycore_py.cli.common.options import examples, json_option
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, print_json
 
 
 @click.command(
@@ -40,10 +40,10 @@ def command(other: Path, pairs: int, size: str, between: bool, as_json: bool) ->
         return
     place = "between clusters" if between else "inside a cluster"
     low_us, high_us = found.interval_us()
-    click.echo(f"round trip {size} {place}, {pairs} pairs, medians of runs:")
-    click.echo(f"  this build   {statistics.median(found.this_us):8.3f} us")
-    click.echo(f"  other build  {statistics.median(found.other_us):8.3f} us")
-    click.echo(
+    echo(f"round trip {size} {place}, {pairs} pairs, medians of runs:")
+    echo(f"  this build   {statistics.median(found.this_us):8.3f} us")
+    echo(f"  other build  {statistics.median(found.other_us):8.3f} us")
+    echo(
         f"  difference   {statistics.median(found.differences_us):+8.3f} us "
         f"(95 % confidence: {low_us:+.3f} to {high_us:+.3f})"
     )

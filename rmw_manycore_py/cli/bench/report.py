@@ -10,12 +10,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import click
 from rich.table import Table
+from rich.text import Text
 
 from rmw_manycore_py.bench.relations import Relation
 from rmw_manycore_py.bench.summary import SPREAD, Result, Verdict, nearest_rank
-from rmw_manycore_py.cli.common.printing import new_table, print_table
+from rmw_manycore_py.cli.common.printing import echo, new_table, print_table
 
 
 @dataclass(frozen=True)
@@ -49,14 +49,14 @@ class Report:
     def print(self) -> None:
         """Print the machine, the measurements and the goals."""
         for name, value in {**self.machine, **self.placements}.items():
-            click.echo(f"{name}: {value}")
-        click.echo()
+            echo(f"{name}: {value}")
+        echo()
         print_table(_results_table(self.results))
         if self.verdicts:
-            click.echo()
+            echo()
             print_table(_goals_table(self.verdicts))
         if self.relations:
-            click.echo()
+            echo()
             print_table(_relations_table(self.relations))
 
     def write(self, directory: Path) -> list[Path]:
@@ -129,7 +129,7 @@ def _goals_table(verdicts: Sequence[Verdict]) -> Table:
             verdict.goal.contender,
             in_words(verdict),
             number(verdict.found),
-            "[green]reached[/]" if verdict.reached else "[red]missed[/]",
+            Text("reached", "green") if verdict.reached else Text("missed", "red"),
         )
     return table
 
@@ -137,7 +137,7 @@ def _goals_table(verdicts: Sequence[Verdict]) -> Table:
 def _relations_table(relations: Sequence[Relation]) -> Table:
     table = new_table("relation", "in the paper", "found", "", "basis")
     for relation in relations:
-        held = f"[{'green' if relation.holds else 'red'}]{relation.in_words}[/]"
+        held = Text(relation.in_words, "green" if relation.holds else "red")
         table.add_row(relation.name, relation.statement, relation.found, held, relation.basis)
     return table
 

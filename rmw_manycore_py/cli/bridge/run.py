@@ -11,6 +11,7 @@ import click
 from rmw_manycore_bridge.config import load_bridge_file
 from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.launch.bridge import run_bridge
 from rmw_manycore_py.ros.domain import MAX_DOMAIN, ros_domain
@@ -36,4 +37,4 @@ def command(config: Path, inside: int, platform: str) -> None:
 
 
 def _warn(text: str) -> None:
-    click.echo(text, err=True)
+    echo(text, err=True)

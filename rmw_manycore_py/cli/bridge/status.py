@@ -10,7 +10,7 @@ import click
 from rmw_manycore_bridge.counters import DROPS
 from rmw_manycore_bridge.status import status
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
-from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table, size_text
+from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table, size_text
 from rmw_manycore_py.cli.common.view import open_platform
 from rmw_manycore_py.topology import host_cpu_text
 
@@ -27,7 +27,7 @@ def command(platform: str, as_json: bool) -> None:
     if as_json:
         print_json(rows)
     elif not rows:
-        click.echo(f"platform {platform} has no bridge")
+        echo(f"platform {platform} has no bridge")
     else:
         _show(rows)
 
@@ -46,7 +46,7 @@ def _show(rows: list[dict[str, Any]]) -> None:
             drops or row["reason"],
         )
     print_table(table)
-    click.echo(_datagrams_text(rows))
+    echo(_datagrams_text(rows))
 
 
 def _datagrams_text(rows: list[dict[str, Any]]) -> str:

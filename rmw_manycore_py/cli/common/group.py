@@ -14,6 +14,7 @@ from click.shell_completion import CompletionItem
 from typing_extensions import override
 
 from rmw_manycore_hook import raise_on_interrupt
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.errors import EXIT_INTERRUPTED, reported
 
@@ -78,7 +79,7 @@ class LazyGroup(click.Group):
             if known is None:
                 raise
             with suppress(OSError):
-                click.echo(f"manycore: {known}", err=True)
+                echo(f"manycore: {known}", err=True)
             sys.exit(known.exit_status)
 
     @override

@@ -5,9 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import click
-
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 from rmw_manycore_py.cli.common.rows import Row
 from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.errors import ManycoreError
@@ -20,10 +18,11 @@ def show_names(
     if as_json:
         print_json(rows)
     elif count:
-        click.echo(len(rows))
+        echo(len(rows))
     else:
         for row in rows:
-            click.echo(f"{row['name']} [{', '.join(row['types'])}]" if types else row["name"])
+            name = escaped(row["name"])
+            echo(f"{name} [{escaped(', '.join(row['types']))}]" if types else name)
 
 
 def row_of(rows: Sequence[Row], name: str, kind: str) -> Row:
@@ -45,4 +44,4 @@ def unknown(name: str, kind: str, rows: Sequence[Row]) -> ManycoreError:
 def show_types(rows: Sequence[Row], name: str, kind: str) -> None:
     """Print the types of the named entity, one per line."""
     for type_name in row_of(rows, name, kind)["types"]:
-        click.echo(type_name)
+        echo(type_name)

@@ -4,12 +4,32 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable
 from typing import Any
 
 import click
-from rich.console import Console
+from rich.console import Console, RenderableType
 from rich.table import Table
+from rich.text import Text
+
+# C0 and C1 control characters, and those that reorder the text around them.
+_CONTROL = re.compile("[\0-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+
+
+def escaped(text: str) -> str:
+    """Return a text without control characters, line breaks included: a name within a line."""
+    return _CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+
+
+def printable(text: str) -> str:
+    """Return a text whose lines and tabs stay, without other control characters."""
+    return "\n".join("\t".join(map(escaped, line.split("\t"))) for line in text.split("\n"))
+
+
+def echo(text: object = "", *, err: bool = False, nl: bool = True) -> None:
+    """Print a text that may hold names of other processes; their control characters do nothing."""
+    click.echo(printable(str(text)), err=err, nl=nl)
 
 
 def print_json(data: Any) -> None:
@@ -20,12 +40,26 @@ def print_json(data: Any) -> None:
 def print_notices(notices: Iterable[str]) -> None:
     """Print notices to standard error, apart from the output proper."""
     for notice in notices:
-        click.secho(f"notice: {notice}", fg="yellow", err=True)
+        click.secho(f"notice: {printable(notice)}", fg="yellow", err=True)
+
+
+class PlainTable(Table):
+    """Table without lines, whose texts are neither markup nor contain control characters."""
+
+    def add_row(self, *cells: RenderableType | None, **options: Any) -> None:
+        """Add a row; a `Text` keeps its style."""
+        super().add_row(*map(_plain_cell, cells), **options)
+
+
+def _plain_cell(cell: RenderableType | None) -> RenderableType | None:
+    if isinstance(cell, Text):
+        return Text(escaped(cell.plain), cell.style, spans=cell.spans)
+    return Text(escaped(cell)) if isinstance(cell, str) else cell
 
 
 def new_table(*columns: str) -> Table:
     """Return a plain table; columns whose name starts with # are numeric."""
-    table = Table(box=None, pad_edge=False)
+    table = PlainTable(box=None, pad_edge=False)
     for column in columns:
         is_number = column.startswith("#")
         table.add_column(column.lstrip("#"), justify="right" if is_number else "left")

@@ -8,7 +8,13 @@ from itertools import cycle
 
 import click
 
-from rmw_manycore_py.cli.common.printing import new_table, print_table, size_text
+from rmw_manycore_py.cli.common.printing import (
+    echo,
+    new_table,
+    print_table,
+    printable,
+    size_text,
+)
 from rmw_manycore_py.launch.event_text import SUPERVISOR, text_of
 from rmw_manycore_py.launch.events import (
     Ended,
@@ -74,7 +80,7 @@ class RunPrinter:
 
     def say(self, text: str, fg: str | None = None) -> None:
         """Print a line of the run itself, without a node name."""
-        click.secho(f"{SUPERVISOR:<{self._width}} | {text}", fg=fg, bold=fg is None)
+        click.secho(f"{SUPERVISOR:<{self._width}} | {printable(text)}", fg=fg, bold=fg is None)
 
     def _ended(self, event: Ended) -> None:
         failed = event.state == "failed"
@@ -85,13 +91,13 @@ class RunPrinter:
     def _finished(self) -> None:
         """Repeat which nodes failed and why: the reason may have scrolled away."""
         for failure in self._failures:
-            click.secho(f"\n{failure.node} failed: {failure.reason}", fg="red", err=True)
+            click.secho(f"\n{failure.node} failed: {printable(failure.reason)}", fg="red", err=True)
             for line in failure.last_lines:
                 click.echo(f"    {line}", err=True)
 
 
 def _print_platform(event: Platform) -> None:
-    click.echo(
+    echo(
         f"platform {event.name} ({event.profile}): {event.clusters} clusters x "
         f"{event.cores_per_cluster} cores, SMEM {size_text(event.smem_size)} each"
     )

@@ -6,6 +6,7 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common.options import discovery_options, examples, platform_option
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.component.containers import (
     Container,
@@ -35,6 +36,6 @@ def command(container: str, wanted: Wanted, quiet: bool, platform: str) -> None:
     with tool_node(platform) as tool:
         unique_id, node = Container(tool, name).load(wanted)
     if quiet:
-        click.echo(f"{unique_id}  {node}")
+        echo(f"{unique_id}  {node}")
     else:
-        click.echo(loaded_line(unique_id, name, node))
+        echo(loaded_line(unique_id, name, node))

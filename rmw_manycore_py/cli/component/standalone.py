@@ -12,6 +12,7 @@ import click
 
 from rmw_manycore_py.cli.common.node_names import absolute_name, existing_node
 from rmw_manycore_py.cli.common.options import discovery_options, examples, platform_option
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.component.containers import Container, Wanted, loaded_line
 from rmw_manycore_py.cli.component.wanted_options import wanted_options
@@ -73,7 +74,7 @@ def _end_of(container: subprocess.Popen[bytes], line: str) -> int:
     From the line on, an interrupt ends the container and counts as success.
     """
     try:
-        click.echo(line)
+        echo(line)
         return container.wait()
     except KeyboardInterrupt:
         return _end(container)

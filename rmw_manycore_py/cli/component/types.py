@@ -6,7 +6,7 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common.options import examples, json_option
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.cli.component.registered import component_types, packages_with_components
 from rmw_manycore_py.cli.component.wanted_options import complete_component_packages
@@ -29,6 +29,6 @@ def command(package: str | None, as_json: bool) -> None:
         return
     for name, types in found.items():
         if not package:
-            click.echo(name)
+            echo(name)
         for type_name in types:
-            click.echo(type_name if package else f"  {type_name}")
+            echo(type_name if package else f"  {type_name}")

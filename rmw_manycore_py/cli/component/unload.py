@@ -6,6 +6,7 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common.options import discovery_options, examples, platform_option
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.component.containers import (
     Container,
@@ -26,7 +27,7 @@ def command(container: str, ids: tuple[int, ...], quiet: bool, platform: str) ->
     with tool_node(platform) as tool:
         for unique_id in ids:
             Container(tool, name).unload(unique_id)
-            click.echo(
+            echo(
                 unique_id
                 if quiet
                 else f"Unloaded component {unique_id} from '{name}' container node"

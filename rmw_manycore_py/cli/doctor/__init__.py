@@ -9,7 +9,7 @@ from collections.abc import Iterable
 import click
 
 from rmw_manycore_py.cli.common.options import examples, json_option
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict
 from rmw_manycore_py.cli.doctor.install import check_install
 from rmw_manycore_py.cli.doctor.machine import check_machine
@@ -87,6 +87,6 @@ def _rows(findings: Iterable[Finding]) -> list[dict[str, str]]:
 def _show(findings: Iterable[Finding]) -> None:
     for finding in findings:
         verdict = click.style(f"{finding.verdict.value:<7}", fg=COLOURS[finding.verdict])
-        click.echo(f"{verdict}  {finding.subject}: {finding.found}")
+        click.echo(f"{verdict}  {escaped(f'{finding.subject}: {finding.found}')}")
         if finding.advice:
-            click.echo(f"{'':<7}  -> {finding.advice}")
+            echo(f"{'':<7}  -> {finding.advice}")

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import click
-
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.doctor.report import Section, as_json, as_text, report
 from rmw_manycore_py.errors import ManycoreError
 
@@ -20,10 +19,10 @@ def write_report(
     sections = report(findings, mapfile, packages=packages)
     text = as_json(sections) if Path(target).suffix == ".json" else as_text(sections)
     if target == PRINTED:
-        click.echo(text, nl=False)
+        echo(text, nl=False)
         return
     try:
         Path(target).write_text(text, encoding="utf-8")
     except OSError as error:
         raise ManycoreError(f"{target}: cannot be written: {error.strerror}") from error
-    click.echo(f"written to {target}; review it before sharing")
+    echo(f"written to {target}; review it before sharing")

@@ -10,7 +10,7 @@ import click
 from rich.console import Console
 
 from rmw_manycore_py.cli.common.options import examples
-from rmw_manycore_py.cli.common.printing import counted, print_notices
+from rmw_manycore_py.cli.common.printing import counted, echo, print_notices
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.interfaces.build import Listener, Outcome, build
 from rmw_manycore_py.interfaces.selection import Part
@@ -80,7 +80,7 @@ def _print_outcome(outcome: Outcome) -> None:
     part, manifest = outcome.part, outcome.manifest
     number = counted(len(part.definitions), "definition")
     time = f" in {manifest.seconds:g} s" if outcome.is_new else ", built before"
-    click.echo(f"{part.package}: {number}{time}{_saving(part)}")
+    echo(f"{part.package}: {number}{time}{_saving(part)}")
 
 
 def _saving(part: Part) -> str:

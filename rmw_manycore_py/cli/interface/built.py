@@ -6,10 +6,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from typing import Any
 
-import click
-
 from rmw_manycore_interfaces import hash_of
-from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table
+from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.cli.interface.kinds import of_kinds
 from rmw_manycore_py.interfaces.store import Manifest, Store
 from rmw_manycore_py.ros import ament
@@ -22,7 +20,7 @@ def print_built(kinds: Collection[str], as_json: bool) -> None:
     if as_json:
         print_json(rows)
     elif not rows:
-        click.echo(f"no packages built in {store.directory}")
+        echo(f"no packages built in {store.directory}")
     else:
         table = new_table("package", "#types", "built", "programs use")
         for row in rows:

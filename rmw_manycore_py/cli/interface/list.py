@@ -6,7 +6,7 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common.options import examples, json_option
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.interface.built import print_built
 from rmw_manycore_py.cli.interface.kinds import TITLES, kind_of, kind_options
 from rmw_manycore_py.ros.ament import interfaces, packages_with_interfaces
@@ -35,6 +35,6 @@ def command(kinds: tuple[str, ...], built: bool, as_json: bool) -> None:
         print_json(found)
         return
     for kind, of_kind in found.items():
-        click.echo(f"{TITLES[kind]}:")
+        echo(f"{TITLES[kind]}:")
         for name in of_kind:
-            click.echo(f"    {name}")
+            echo(f"    {name}")

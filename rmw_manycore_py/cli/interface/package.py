@@ -7,7 +7,7 @@ import click
 
 from rmw_manycore_py.cli.common.completion import complete_packages
 from rmw_manycore_py.cli.common.options import examples, json_option
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.cli.interface.kinds import kind_options, of_kinds
 from rmw_manycore_py.errors import ManycoreError
@@ -30,4 +30,4 @@ def command(package: str, kinds: tuple[str, ...], as_json: bool) -> None:
         print_json(names)
         return
     for name in names:
-        click.echo(name)
+        echo(name)

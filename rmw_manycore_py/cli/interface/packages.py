@@ -6,7 +6,7 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common.options import examples, json_option
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.interface.kinds import kind_options, of_kinds
 from rmw_manycore_py.ros.ament import interfaces, packages_with_interfaces
 
@@ -21,4 +21,4 @@ def command(kinds: tuple[str, ...], as_json: bool) -> None:
         print_json(names)
         return
     for name in names:
-        click.echo(name)
+        echo(name)

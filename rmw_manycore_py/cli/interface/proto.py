@@ -11,6 +11,7 @@ from rmw_manycore_py.cli.common.completion import complete_types
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_text import ALL, to_yaml
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 
 # The part of a type that a user writes: the message, the request, or the goal.
@@ -23,7 +24,7 @@ _PARTS = {"msg": None, "srv": "Request", "action": "Goal"}
 def command(type_name: str, no_quotes: bool) -> None:
     """Print a prototype of TYPE to edit: of a service its request, of an action its goal."""
     text = to_yaml(_prototype(type_name), ALL)
-    click.echo(text if no_quotes else f'"{text}"')
+    echo(text if no_quotes else f'"{text}"')
 
 
 def _prototype(type_name: str) -> Any:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.interfaces.build import remove
 
 
@@ -13,6 +14,6 @@ from rmw_manycore_py.interfaces.build import remove
 @click.argument("packages", metavar="PACKAGE...", nargs=-1, required=True)
 def command(packages: tuple[str, ...]) -> None:
     """Remove packages made by `manycore interface build`."""
-    remove(packages, lambda: click.echo("waiting for a build to finish", err=True))
+    remove(packages, lambda: echo("waiting for a build to finish", err=True))
     for package in packages:
-        click.echo(f"{package}: removed")
+        echo(f"{package}: removed")

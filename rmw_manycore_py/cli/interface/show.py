@@ -9,6 +9,7 @@ import click
 
 from rmw_manycore_py.cli.common.completion import complete_types
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.values_argument import exclude
 from rmw_manycore_py.cli.interface.text import definition
 
@@ -29,4 +30,4 @@ def command(type_name: str, all_comments: bool, no_comments: bool) -> None:
     if type_name == "-":
         type_name = sys.stdin.readline().strip()
     for line in definition(type_name, comments=not no_comments, nested_comments=all_comments):
-        click.echo(line)
+        echo(line)

@@ -12,7 +12,7 @@ from rmw_manycore_py.cli.common.options import (
     named_node_options,
     platform_option,
 )
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.lifecycle.services import (
     Lifecycle,
@@ -38,7 +38,7 @@ def command(node: str, every: bool, platform: str, as_json: bool) -> None:
         print_json([to_plain(transition) for transition in transitions])
         return
     for found in transitions:
-        click.echo(
+        echo(
             f"- {found.transition.label} [{found.transition.id}]\n"
             f"\tStart: {found.start_state.label}\n"
             f"\tGoal: {found.goal_state.label}"

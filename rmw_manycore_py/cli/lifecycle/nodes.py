@@ -13,7 +13,7 @@ from rmw_manycore_py.cli.common.options import (
     json_option,
     platform_option,
 )
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.lifecycle.services import lifecycle_nodes
 from rmw_manycore_py.ros.names import is_hidden
 
@@ -32,7 +32,7 @@ def command(platform: str, count: bool, hidden: bool, everything: bool, as_json:
     if as_json:
         print_json(names)
     elif count:
-        click.echo(len(names))
+        echo(len(names))
     else:
         for name in names:
-            click.echo(name)
+            echo(name)

@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from rmw_manycore_py.cli.common.options import examples, named_node_options, platform_option
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.lifecycle.services import (
     Lifecycle,
@@ -30,7 +31,7 @@ def command(node: str, transition: str, platform: str) -> None:
         available = [found.transition for found in lifecycle.transitions()]
         if not lifecycle.change(_chosen(available, transition)):
             raise ManycoreError("Transitioning failed")
-    click.echo("Transitioning successful")
+    echo("Transitioning successful")
 
 
 def _chosen(available: list[Any], wanted: str) -> Any:

@@ -9,7 +9,7 @@ import click
 
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples, json_option
-from rmw_manycore_py.cli.common.printing import counted, print_json, print_notices
+from rmw_manycore_py.cli.common.printing import counted, echo, print_json, print_notices
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 
@@ -31,6 +31,4 @@ def command(mapfile: Path, as_json: bool) -> None:
     print_notices(placement.notices)
     nodes = counted(len(placement.nodes), "node")
     clusters = counted(len({node.cluster for node in placement.nodes}), "cluster")
-    click.echo(
-        f"{mapfile}: {nodes} in {clusters}, {counted(len(placement.topics), 'topic')}: valid"
-    )
+    echo(f"{mapfile}: {nodes} in {clusters}, {counted(len(placement.topics), 'topic')}: valid")

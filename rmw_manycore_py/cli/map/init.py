@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.mapfile.template import init
 from rmw_manycore_py.topology import PROFILES
@@ -39,7 +40,7 @@ def command(sources: tuple[str, ...], profile: str, output: Path | None) -> None
     files = [Path(source) for source in sources if ":=" not in source]
     text = init(files, output.parent if output else None, profile, arguments)
     if output is None:
-        click.echo(text, nl=False)
+        echo(text, nl=False)
         return
     try:
         with output.open("x", encoding="utf-8") as file:

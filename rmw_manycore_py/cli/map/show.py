@@ -11,6 +11,7 @@ import click
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import (
+    echo,
     new_table,
     print_json,
     print_notices,
@@ -40,7 +41,7 @@ def command(mapfile: Path, as_json: bool) -> None:
 
 
 def _show_nodes(placement: Placement) -> None:
-    click.echo(f"platform {placement.name} ({placement.topology.profile})")
+    echo(f"platform {placement.name} ({placement.topology.profile})")
     table = new_table("node", "#cluster", "#core", "#host CPU", "command")
     for node in placement.nodes:
         place = (str(node.cluster), str(node.core), str(node.host_cpu))
@@ -58,7 +59,7 @@ def _show_nodes(placement: Placement) -> None:
 def _show_rules(placement: Placement) -> None:
     rules = {node.full_name: rules_in_words(node) for node in placement.nodes}
     if any(rules.values()):
-        click.echo("\nlaunch rules")
+        echo("\nlaunch rules")
         table = new_table("node", "rule")
         for name, words in rules.items():
             for word in words:
@@ -67,7 +68,7 @@ def _show_rules(placement: Placement) -> None:
 
 
 def _show_topics(placement: Placement) -> None:
-    click.echo("\ntopic table")
+    echo("\ntopic table")
     columns = (
         "#id",
         "topic",
@@ -88,7 +89,7 @@ def _show_topics(placement: Placement) -> None:
 
 
 def _show_memory(placement: Placement) -> None:
-    click.echo("\nmemory")
+    echo("\nmemory")
     table = new_table("#cluster", "#SMEM", "#fixed topic DSMs")
     for memory in placement.memory:
         table.add_row(str(memory.cluster), size_text(memory.smem_size), size_text(memory.used))

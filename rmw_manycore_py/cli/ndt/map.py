@@ -9,6 +9,7 @@ import click
 
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import writing
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.ndt.recording_options import recording_options
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
 from rmw_manycore_py.ndt.maps.map_file import SUFFIXES, write_points
@@ -83,7 +84,7 @@ def command(
     with writing(output):
         if tile_m is None:
             write_points(output, points)
-            click.echo(f"{output}: {len(points)} points")
+            echo(f"{output}: {len(points)} points")
         else:
             count = write_tiles(output, points, tile_m, f".{suffix}")
-            click.echo(f"{output}: {len(points)} points in {count} tiles")
+            echo(f"{output}: {len(points)} points in {count} tiles")

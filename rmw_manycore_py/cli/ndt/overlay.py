@@ -10,6 +10,7 @@ import click
 from rmw_manycore_py.autoware_overlay import MAP_LOADER, MATCHER, write_overlay
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import writing
+from rmw_manycore_py.cli.common.printing import echo
 
 
 @click.command(
@@ -33,5 +34,5 @@ def command(directory: Path, map_loader: bool) -> None:
         found = write_overlay(directory, (MATCHER, MAP_LOADER) if map_loader else (MATCHER,))
     for package, stock in found.items():
         files = f"launch and parameter files of {stock}" if stock else "no Autoware is sourced"
-        click.echo(f"{directory}: {package} ({files})")
-    click.echo(f". {directory}/setup.sh")
+        echo(f"{directory}: {package} ({files})")
+    echo(f". {directory}/setup.sh")

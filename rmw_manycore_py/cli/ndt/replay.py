@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.common.options import examples
-from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table
+from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.cli.ndt.recording_options import recording_options
 from rmw_manycore_py.cli.ndt.replay_files import ReplayFiles, output_options
 from rmw_manycore_py.launch.processes.environment import enter_middleware, leave_middleware
@@ -153,20 +153,20 @@ def command(
 
     drive = open_recording(recording, poses_path, topic, pose_topic).first(scans)
     if drive.note:
-        click.echo(f"recording: {drive.note}", err=True)
+        echo(f"recording: {drive.note}", err=True)
     guesses = GuessKind(kind, motion, drift, offset_m, turn_deg, seed)
     motions = guesses.motions(drive)
     made_of = guesses.made_of(motions)
-    click.echo(f"guesses: {made_of}", err=True)
+    echo(f"guesses: {made_of}", err=True)
     source = guesses.source(drive, motions, rate_hz)
     points = None if no_map else _map_of(recording, drive, map_path)
     if points is not None and (warning := why_coarse(points)):
-        click.echo(f"the map is coarse: {warning}", err=True)
+        echo(f"the map is coarse: {warning}", err=True)
     tally = Tally(deadline_ms)
     run(drive, source, tally, points, voxel_m, rate_hz, waits, timeout_s, pid)
     summary = tally.summary()
     if complaint := tally.complaint():
-        click.echo(f"the matcher reported of the first lost scan: {complaint}", err=True)
+        echo(f"the matcher reported of the first lost scan: {complaint}", err=True)
     print_json({"guesses": made_of, **as_json(summary)}) if as_json_ else _print(
         summary, deadline_ms
     )
@@ -209,7 +209,7 @@ def _print(summary: Summary, deadline_ms: float) -> None:
         table.add_row(name, *("" if value is None else f"{value:.3f}" for value in values))
     print_table(table)
     cpu = "" if s.node_cpu_percent is None else f"; matcher's CPU: {s.node_cpu_percent:.1f} %"
-    click.echo(
+    echo(
         f"{s.scans} scans: {s.answered} answered, {s.lost} lost, {s.late} after {deadline_ms:g} "
         f"ms, {s.diverged} diverged; {100 * s.within_share:.1f} % within 0.2 m and 1 degree{cpu}"
     )

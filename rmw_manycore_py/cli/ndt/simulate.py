@@ -10,6 +10,7 @@ import numpy as np
 
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import writing
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.poses import transform
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
@@ -143,9 +144,9 @@ def command(
     note = f"synthetic street, seed {seed}"
     with writing(directory / "drive.npz"):
         save_recording(directory / "drive.npz", record(scans, poses, stamps, note), scale_m)
-    click.echo(f"{directory / 'map.npz'}: {len(points)} points")
+    echo(f"{directory / 'map.npz'}: {len(points)} points")
     size = f"about {len(scans[0].points)} points"
-    click.echo(f"{directory / 'drive.npz'}: {len(scans)} scans of {size}")
+    echo(f"{directory / 'drive.npz'}: {len(scans)} scans of {size}")
 
 
 def _map_of(

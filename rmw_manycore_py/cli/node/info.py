@@ -15,7 +15,7 @@ from rmw_manycore_py.cli.common.options import (
     json_option,
     platform_option,
 )
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 
 
 @click.command("info", epilog=examples("manycore node info /talker"))
@@ -31,10 +31,10 @@ def command(node: str, platform: str, as_json: bool, hidden: bool) -> None:
     if as_json:
         print_json({"node": node, **interfaces})
         return
-    click.echo(node)
+    echo(node)
     for kind, entries in interfaces.items():
-        click.echo(f"  {kind.replace('_', ' ').title()}:")
+        echo(f"  {kind.replace('_', ' ').title()}:")
         for name, type_name in entries.items():
-            click.echo(f"    {name}: {type_name}")
+            echo(f"    {escaped(name)}: {escaped(type_name)}")
         if not entries:
-            click.echo()
+            echo()

@@ -14,7 +14,7 @@ from rmw_manycore_py.cli.common.options import (
     json_option,
     platform_option,
 )
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 
 SHARED_NAME = (
     "WARNING: Be aware that there are nodes in the graph that share an exact name, which can have "
@@ -38,6 +38,6 @@ def command(platform: str, as_json: bool, hidden: bool, everything: bool, count:
         print_json(view.placed_nodes(nodes, processes, set(names)))
         return
     if len(set(names)) < len(names) and not count:
-        click.echo(SHARED_NAME, err=True)
+        echo(SHARED_NAME, err=True)
     for name in [len(names)] if count else names:
-        click.echo(name)
+        echo(escaped(str(name)))

@@ -16,7 +16,7 @@ from rmw_manycore_py.cli.common.options import (
     named_node_options,
     platform_option,
 )
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
 from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
@@ -40,7 +40,7 @@ def command(
         print_json([to_plain(descriptor) for descriptor in descriptors])
         return
     for descriptor in descriptors:
-        click.echo("\n".join(_lines(descriptor)))
+        echo("\n".join(_lines(descriptor)))
 
 
 def _lines(descriptor: Any) -> Iterator[str]:

@@ -13,7 +13,7 @@ from rmw_manycore_py.cli.common.options import (
     named_node_options,
     platform_option,
 )
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
 from rmw_manycore_py.cli.param.parameters import Parameters, nested
@@ -36,4 +36,4 @@ def command(node: str, timeout_s: float, platform: str, as_json: bool) -> None:
     if as_json:
         print_json(file)
     else:
-        click.echo(yaml.safe_dump(file, default_flow_style=False))
+        echo(yaml.safe_dump(file, default_flow_style=False))

@@ -12,7 +12,7 @@ from rmw_manycore_py.cli.common.options import (
     named_node_options,
     platform_option,
 )
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
 from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
@@ -36,6 +36,6 @@ def command(
     if as_json:
         print_json({"name": parameter, "type": TYPES[kind][0], "value": value})
     elif hide_type:
-        click.echo(value)
+        echo(value)
     else:
-        click.echo(TYPES[kind][1] if value is None else f"{TYPES[kind][1]} {value}")
+        echo(TYPES[kind][1] if value is None else f"{TYPES[kind][1]} {value}")

@@ -7,6 +7,7 @@ import click
 
 from rmw_manycore_py.cli.common.completion import complete_nodes
 from rmw_manycore_py.cli.common.options import examples, named_node_options, platform_option
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
 from rmw_manycore_py.cli.param.parameters import Parameters, parameters_of_file
@@ -29,7 +30,7 @@ def command(node: str, file: str, no_use_wildcard: bool, timeout_s: float, platf
         for parameter, result in Parameters(tool, name).set(wanted):
             reason = f": {result.reason}" if result.reason else ""
             if result.successful:
-                click.echo(f"Set parameter {parameter} successful{reason}")
+                echo(f"Set parameter {parameter} successful{reason}")
             else:
                 refused.append(f"Set parameter {parameter} failed{reason}")
     if refused:

@@ -7,6 +7,7 @@ import click
 
 from rmw_manycore_py.cli.common.completion import complete_nodes
 from rmw_manycore_py.cli.common.options import examples, named_node_options, platform_option
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
 from rmw_manycore_py.cli.param.parameters import Parameters, parameter_of
@@ -32,4 +33,4 @@ def command(node: str, parameter: str, value: str, timeout_s: float, platform: s
     reason = f": {result.reason}" if result.reason else ""
     if not result.successful:
         raise ManycoreError(f"Setting parameter failed{reason}")
-    click.echo(f"Set parameter successful{reason}")
+    echo(f"Set parameter successful{reason}")

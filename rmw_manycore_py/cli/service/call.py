@@ -14,7 +14,7 @@ from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_text import to_plain
 from rmw_manycore_py.cli.common.message_values import message_of, parse_values
 from rmw_manycore_py.cli.common.options import examples, platform_option
-from rmw_manycore_py.cli.common.printing import print_notices
+from rmw_manycore_py.cli.common.printing import echo, print_notices
 from rmw_manycore_py.cli.common.suggestions import closest
 from rmw_manycore_py.cli.common.tool_node import result_of, tool_node
 from rmw_manycore_py.cli.common.values_argument import DEFAULTS, values_argument
@@ -55,16 +55,16 @@ def command(
     with tool_node(platform) as node:
         client = node.create_client(service_type, service)
         if not client.service_is_ready() and not as_json:
-            click.echo("waiting for service to become available...")
+            echo("waiting for service to become available...")
             _suggest(service, platform)
         while not client.service_is_ready():
             spin_once(node)
         while True:
             if not as_json:
-                click.echo(f"requester: making request: {request!r}\n")
+                echo(f"requester: making request: {request!r}\n")
             start_s = time.monotonic()
             response = result_of(node, client.call_async(request), service)
-            click.echo(json.dumps(to_plain(response)) if as_json else f"response:\n{response!r}\n")
+            echo(json.dumps(to_plain(response)) if as_json else f"response:\n{response!r}\n")
             if rate_hz is None:
                 return
             time.sleep(max(0.0, start_s + 1 / rate_hz - time.monotonic()))

@@ -14,7 +14,7 @@ from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_text import Shown, plain_to_yaml, to_csv, to_plain
 from rmw_manycore_py.cli.common.names import row_of
 from rmw_manycore_py.cli.common.options import examples, platform_option
-from rmw_manycore_py.cli.common.printing import print_notices
+from rmw_manycore_py.cli.common.printing import echo, print_notices
 from rmw_manycore_py.cli.common.shown_options import shown_options
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.ros.names import expand
@@ -49,7 +49,7 @@ def command(
     topic = f"{service}/_service_event"
 
     def heard(event: Any) -> None:
-        click.echo(_text(event, style, shown))
+        echo(_text(event, style, shown))
 
     with tool_node(platform) as node:
         from rclpy.qos import QoSPresetProfiles

@@ -6,6 +6,7 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.topic.listening import Listener
 from rmw_manycore_py.cli.topic.measuring import PERIOD_S, measuring_options, print_result
 from rmw_manycore_py.cli.topic.meters.bandwidth import BandwidthMeter
@@ -40,7 +41,7 @@ def command(
         raw=True,
         sim_time=sim_time,
         waits=True,
-        subscribed=None if as_json else lambda name: click.echo(f"Subscribed to [{name}]"),
+        subscribed=None if as_json else lambda name: echo(f"Subscribed to [{name}]"),
     )
     listener.every(PERIOD_S, show)
     listener.run()

@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.topic.listening import Listener
 from rmw_manycore_py.cli.topic.measuring import PERIOD_S, measuring_options, print_result
 from rmw_manycore_py.cli.topic.meters.delay import Delay, DelayMeter
@@ -45,7 +46,7 @@ def command(
             print_result(delay, as_json)
             printed = delay
         elif delay is not None and not as_json:
-            click.echo("no new messages")
+            echo("no new messages")
 
     listener = Listener(platform, topic, type_name, heard, sim_time=sim_time, waits=True)
     listener.every(PERIOD_S, show)

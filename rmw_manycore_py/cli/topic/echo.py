@@ -18,6 +18,7 @@ from rmw_manycore_py.cli.common.message_text import (
     to_yaml,
 )
 from rmw_manycore_py.cli.common.options import discovery_options, examples, platform_option
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.shown_options import shown_options
 from rmw_manycore_py.cli.topic.listening import Listener
 from rmw_manycore_py.cli.topic.message_part import message_filter, part_of
@@ -90,7 +91,7 @@ def command(
         part = message if style == "raw" else part_of(message, field)
         if not fulfils(part):
             return
-        click.echo(_text(part, info if with_info else None, style, shown))
+        echo(_text(part, info if with_info else None, style, shown))
         if once:
             listener.stop()
 
@@ -127,7 +128,7 @@ def _text(part: Any, info: dict[str, Any] | None, style: str | None, shown: Show
 
 
 def _tell_lost(status: Any) -> None:
-    click.echo(
+    echo(
         f"A message was lost!!!\n\ttotal count change:{status.total_count_change}"
         f"\n\ttotal count: {status.total_count}---"
     )

@@ -15,7 +15,7 @@ from rmw_manycore_py.cli.common.options import (
     json_option,
     platform_option,
 )
-from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 from rmw_manycore_py.cli.common.rows import counters_row, endpoint_row
 
 
@@ -42,37 +42,36 @@ def command(topic: str, platform: str, as_json: bool, verbose: bool) -> None:
         print_json({"topic": topic, **rows})
         return
     types = list(dict.fromkeys(e.type for e in endpoints))
-    click.echo(f"Type: {types[0] if len(types) == 1 else types}")
+    echo(f"Type: {types[0] if len(types) == 1 else types}")
     for title, found in (("Publisher", publishers), ("Subscription", subscriptions)):
         if not verbose:
-            click.echo(f"{title} count: {len(found)}")
+            echo(f"{title} count: {len(found)}")
             continue
-        click.echo(f"\n{title} count: {len(found)}")
+        echo(f"\n{title} count: {len(found)}")
         for endpoint in found:
-            click.echo(f"\n{describe(endpoint)}")
+            echo(f"\n{describe(endpoint)}")
     if verbose:
-        click.echo()  # trailing blank line of ros2cli
+        echo()  # trailing blank line of ros2cli
 
 
 def describe(endpoint: EndpointInfo) -> str:
     """Format an endpoint as `ros2 topic info --verbose` does, followed by its placement."""
     counters = counters_row(endpoint.counters)
-    return "\n".join(
-        (
-            f"Node name: {endpoint.node_name}",
-            f"Node namespace: {endpoint.node_namespace}",
-            f"Topic type: {endpoint.type}",
-            f"Topic type hash: {endpoint.type_hash}",
-            f"Endpoint type: {endpoint.kind.upper()}",
-            f"GID: {endpoint.gid.hex('.')}",
-            "QoS profile:",
-            *(f"  {line}" for line in _describe_qos(endpoint.qos)),
-            f"Cluster: {endpoint.cluster}",
-            *([f"Transfer: {endpoint.transfer}"] if endpoint.transfer != "dsm" else []),
-            f"Matched: {endpoint.matched}",
-            f"Counters: {', '.join(f'{name} {count}' for name, count in counters.items())}",
-        )
+    lines = (
+        f"Node name: {endpoint.node_name}",
+        f"Node namespace: {endpoint.node_namespace}",
+        f"Topic type: {endpoint.type}",
+        f"Topic type hash: {endpoint.type_hash}",
+        f"Endpoint type: {endpoint.kind.upper()}",
+        f"GID: {endpoint.gid.hex('.')}",
+        "QoS profile:",
+        *(f"  {line}" for line in _describe_qos(endpoint.qos)),
+        f"Cluster: {endpoint.cluster}",
+        *([f"Transfer: {endpoint.transfer}"] if endpoint.transfer != "dsm" else []),
+        f"Matched: {endpoint.matched}",
+        f"Counters: {', '.join(f'{name} {count}' for name, count in counters.items())}",
     )
+    return "\n".join(map(escaped, lines))
 
 
 def _describe_qos(qos: Qos) -> list[str]:

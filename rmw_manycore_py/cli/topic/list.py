@@ -18,7 +18,7 @@ from rmw_manycore_py.cli.common.options import (
     platform_option,
     types_option,
 )
-from rmw_manycore_py.cli.common.printing import counted
+from rmw_manycore_py.cli.common.printing import counted, echo, escaped
 from rmw_manycore_py.cli.common.rows import Row
 
 
@@ -43,10 +43,10 @@ def command(
 
 
 def _show_users(rows: Iterable[Row], title: str, kind: str) -> None:
-    click.echo(f"{title}:")
+    echo(f"{title}:")
     for row in rows:
         number, noun = row[f"{kind}s"], "subscriber" if kind == "subscription" else kind
         if number:
             types = ", ".join(row["types"])
-            click.echo(f" * {row['name']} [{types}] {counted(number, noun)}")
-    click.echo()
+            echo(f" * {escaped(row['name'])} [{escaped(types)}] {counted(number, noun)}")
+    echo()

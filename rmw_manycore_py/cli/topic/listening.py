@@ -7,12 +7,10 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-import click
-
 from rmw_manycore_py._transport import EndpointInfo
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.interface_types import load_type
-from rmw_manycore_py.cli.common.printing import print_notices
+from rmw_manycore_py.cli.common.printing import echo, print_notices
 from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
@@ -86,7 +84,7 @@ class Listener:
     def _wait_for_topic(self, node: Any) -> None:
         if self._type_name or _endpoints(self._platform, self._topic):
             return
-        click.echo(
+        echo(
             f"WARNING: topic [{self._topic}] does not appear to be published yet"
             f"{did_you_mean(self._topic, _topics(self._platform))}",
             err=True,

@@ -12,6 +12,7 @@ import click
 
 from rmw_manycore_py.cli.common.completion import complete_topics, complete_types_of_topic
 from rmw_manycore_py.cli.common.options import platform_option, talking_options
+from rmw_manycore_py.cli.common.printing import echo
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -55,4 +56,4 @@ def measuring_options(least: int, default: int, of: str) -> Callable[[Command], 
 
 def print_result(result: DataclassInstance, as_json: bool) -> None:
     """Print one result as text or JSON."""
-    click.echo(json.dumps(asdict(result)) if as_json else result)
+    echo(json.dumps(asdict(result)) if as_json else result)

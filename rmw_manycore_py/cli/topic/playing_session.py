@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import click
 import numpy as np
 
 from rmw_manycore_py.cli.common.keyboard import single_keys
-from rmw_manycore_py.cli.common.printing import counted, print_notices
+from rmw_manycore_py.cli.common.printing import counted, echo, print_notices
 from rmw_manycore_py.cli.topic.alarm import Alarm
 from rmw_manycore_py.cli.topic.play_keys import HELP, press
 from rmw_manycore_py.cli.topic.status_line import StatusLine
@@ -118,11 +117,11 @@ def _report(tally: Tally, as_json: bool) -> None:
         median, p99 = np.percentile(np.array(tally.late_ns) / _NS_PER_MS, (50, 99))
         facts.update(late_ms_p50=float(median), late_ms_p99=float(p99))
     if as_json:
-        click.echo(json.dumps(facts))
+        echo(json.dumps(facts))
         return
     text = f"played {counted(tally.messages, 'message')}"
     if tally.late_ns:
         text += (
             f"; late by {facts['late_ms_p50']:.2f} ms (p50), {facts['late_ms_p99']:.2f} ms (p99)"
         )
-    click.echo(text)
+    echo(text)

@@ -16,6 +16,7 @@ from rmw_manycore_py.cli.common.completion import complete_topics, complete_type
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_values import message_of, parse_values, read_values
 from rmw_manycore_py.cli.common.options import examples, platform_option, talking_options
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.common.values_argument import DEFAULTS, exclude, values_argument
 from rmw_manycore_py.cli.topic.qos_options import QosOptions, qos_options
@@ -132,12 +133,12 @@ def command(
     with tool_node(platform, node_name, sim_time=sim_time) as node:
         publisher = node.create_publisher(message_type, topic, qos.profile())
         wait_for_subscriptions(node, publisher, wanted, timeout_s)
-        click.echo("publisher: beginning loop")
+        echo("publisher: beginning loop")
         turns = given if file else repeat(given[0])  # messages of a file once each
         for fields, number in zip(turns, _ticks(node, 1 / rate_hz, times), strict=False):
             message = message_of(message_type, fields, node.get_clock().now().to_msg())
             if shown and number % shown == 0:
-                click.echo(f"publishing #{number}: {message!r}\n")
+                echo(f"publishing #{number}: {message!r}\n")
             publisher.publish(message)
         time.sleep(keep_alive_s)
 

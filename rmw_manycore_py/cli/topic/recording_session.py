@@ -11,9 +11,7 @@ from contextlib import closing
 from dataclasses import dataclass
 from typing import Any
 
-import click
-
-from rmw_manycore_py.cli.common.printing import counted, size_text
+from rmw_manycore_py.cli.common.printing import counted, echo, size_text
 from rmw_manycore_py.cli.topic.alarm import Alarm
 from rmw_manycore_py.cli.topic.status_line import StatusLine
 from rmw_manycore_py.recording.output import Output
@@ -117,11 +115,11 @@ def _report(
     target: Target, output: Output, recorder: Recorder, spent_s: float, as_json: bool
 ) -> None:
     if as_json:
-        click.echo(json.dumps(_facts(target, output, recorder, spent_s)))
+        echo(json.dumps(_facts(target, output, recorder, spent_s)))
         return
     for topic, count in sorted(recorder.losses.items()):
-        click.echo(f"lost: {counted(count, 'message')} of {topic}", err=True)
-    click.echo(
+        echo(f"lost: {counted(count, 'message')} of {topic}", err=True)
+    echo(
         f"{target.path}: {counted(output.messages, 'message')} of "
         f"{counted(len(recorder.rows), 'topic')}, {size_text(output.size_bytes)} in {spent_s:.1f} s"
     )

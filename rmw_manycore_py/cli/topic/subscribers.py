@@ -6,8 +6,7 @@ from __future__ import annotations
 import time
 from typing import Any
 
-import click
-
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.spinning import spin_once
 
@@ -30,6 +29,6 @@ def wait_for_subscriptions(node: Any, publisher: Any, wanted: int, timeout_s: fl
                 f"but only got {found} subscribers"
             )
         if waited_s >= told * TOLD_PERIOD_S:
-            click.echo(f"Waiting for at least {wanted} matching subscription(s)...")
+            echo(f"Waiting for at least {wanted} matching subscription(s)...")
             told += 1
         spin_once(node)

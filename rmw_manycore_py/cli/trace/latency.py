@@ -9,7 +9,7 @@ import click
 
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
 from rmw_manycore_py.cli.common.output_file import OutputFile
-from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table
+from rmw_manycore_py.cli.common.printing import echo, escaped, new_table, print_json, print_table
 from rmw_manycore_py.cli.common.view import require_platform
 from rmw_manycore_py.cli.trace.chart import plot
 from rmw_manycore_py.errors import ManycoreError
@@ -62,7 +62,7 @@ def command(
         return
     for number, one in enumerate(found):
         if number:
-            click.echo()
+            echo()
         _show(one)
 
 
@@ -86,7 +86,7 @@ def _recorded(platform: str) -> Trace:
 
 
 def _show(one: ChainLatency) -> None:
-    click.echo(one.name)
+    echo(escaped(one.name))
     table = new_table("  part", "#count", "#p50", "#p99", "#max")
     for part in one.parts:
         values = (f"{part.quantile(share):.1f}" for share in (0.5, 0.99, 1))

@@ -9,7 +9,7 @@ import click
 
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.output_file import OutputFile
-from rmw_manycore_py.cli.common.printing import counted, print_notices
+from rmw_manycore_py.cli.common.printing import counted, echo, print_notices
 from rmw_manycore_py.cli.common.view import require_platform
 from rmw_manycore_py.trace.files import SUFFIXES
 from rmw_manycore_py.trace.files.saving import save_recorded
@@ -35,4 +35,4 @@ def command(output: Path, platform: str) -> None:
         print_notices(
             [f"{trace.lost} events were lost because rings were full: use trace start --events N"]
         )
-    click.echo(f"{output}: {counted(trace.event_count, 'event')}")
+    echo(f"{output}: {counted(trace.event_count, 'event')}")

@@ -9,7 +9,7 @@ import click
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
-from rmw_manycore_py.cli.common.printing import counted, print_json
+from rmw_manycore_py.cli.common.printing import counted, echo, print_json
 from rmw_manycore_py.cli.common.view import require_platform
 from rmw_manycore_py.native_errors import translate_native_errors
 
@@ -39,7 +39,7 @@ def command(platform: str, as_json: bool) -> None:
         return
     what = [f"cluster {cluster}" for cluster in state.clusters] + state.nodes
     if since_s is None:
-        click.echo(f"platform {platform} is not traced")
+        echo(f"platform {platform} is not traced")
     else:
-        click.echo(f"platform {platform} has been traced for {since_s:.1f} s: {', '.join(what)}")
-    click.echo(f"{counted(state.pending, 'event')} to be saved, {state.lost} lost")
+        echo(f"platform {platform} has been traced for {since_s:.1f} s: {', '.join(what)}")
+    echo(f"{counted(state.pending, 'event')} to be saved, {state.lost} lost")

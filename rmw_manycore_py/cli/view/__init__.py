@@ -14,6 +14,7 @@ import click
 from rmw_manycore_py.cli.common.looking import look_at
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.output_file import OutputFile, writing
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.view import require_platform
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.look.watch import Look, Watch
@@ -64,8 +65,8 @@ def command(
     _require_web_server()
     listener = listen(port)
     # Before the web server is loaded: the browser connects and draws its window meanwhile.
-    click.echo(f"platform {platform}: {listener.link}")
-    click.echo("The link holds a token that gives access to the platform. Ctrl-C stops.", err=True)
+    echo(f"platform {platform}: {listener.link}")
+    echo("The link holds a token that gives access to the platform. Ctrl-C stops.", err=True)
     if opens:
         webbrowser.open(listener.link)
     with listener.socket:

@@ -10,6 +10,7 @@ import numpy as np
 
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import writing
+from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapfile.installed import find_mapfile
 from rmw_manycore_py.ndt.maps.map_file import read_points
@@ -112,9 +113,9 @@ def command(
         directory.mkdir(parents=True, exist_ok=True)
         write_course(directory, course, mapfile)
     along_m = course.trajectory.along_m()
-    click.echo(f"{directory / MAP}: {len(course.map_points)} points")
-    click.echo(f"{directory / TRAJECTORY}: {len(course.trajectory)} points, {along_m[-1]:.0f} m")
-    click.echo(f"next: manycore whill drive --course {directory} --run")
+    echo(f"{directory / MAP}: {len(course.map_points)} points")
+    echo(f"{directory / TRAJECTORY}: {len(course.trajectory)} points, {along_m[-1]:.0f} m")
+    echo(f"next: manycore whill drive --course {directory} --run")
 
 
 def _synthetic(shape: CourseShape, seed: int) -> Course:

@@ -14,7 +14,7 @@ import click
 
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import OutputFile, writing
-from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table
+from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.launch.processes.environment import OUTSIDE_IMPLEMENTATION, leave_middleware
@@ -151,7 +151,7 @@ def _as_data(log: DriveLog) -> dict[str, Any]:
 def _print_outcomes(log: DriveLog) -> None:
     if not log.injected:
         return
-    click.echo()
+    echo()
     table = new_table("fault", "#told to stand after", "#drives on after", "named")
     for one in outcomes(log):
         times = ("-" if t is None else f"{t:.2f} s" for t in (one.stood_s, one.drove_on_s))

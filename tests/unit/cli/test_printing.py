@@ -1,0 +1,54 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Text that other processes chose does not control the terminal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from rich.text import Text
+
+import rmw_manycore_py.cli
+from rmw_manycore_py.cli.common.printing import echo, escaped, new_table, print_table
+
+pytestmark = pytest.mark.unit
+
+CLI = Path(rmw_manycore_py.cli.__file__).parent
+# Styled text, output of nodes, scripts for the shell.
+PRINT_RAW = {
+    "common/printing.py",
+    "common/run_printer.py",
+    "completion.py",
+    "doctor/__init__.py",
+    "env.py",
+    "logs.py",
+    "top/__init__.py",
+}
+
+
+def test_names_are_escaped() -> None:
+    assert escaped("a\x1b[31m\nb\t\r\x00\x9b\u202e\u2028") == (
+        r"a\x1b[31m\nb\t\r\x00\x9b\u202e\u2028"
+    )
+    assert escaped("/größe 😀 ‍") == "/größe 😀 ‍"
+
+
+def test_lines_and_tabs_of_a_text_stay(capsys: pytest.CaptureFixture[str]) -> None:
+    echo("a\n\tb\x1b[2J", nl=False)
+    assert capsys.readouterr().out == "a\n\tb\\x1b[2J"
+
+
+def test_cells_are_no_markup(capsys: pytest.CaptureFixture[str]) -> None:
+    table = new_table("name", "#number")
+    table.add_row("[/red]\x07\n[b]", Text("1\x1b", "red"))
+    print_table(table)
+    assert capsys.readouterr().out.split("\n")[1].split() == [r"[/red]\x07\n[b]", r"1\x1b"]
+
+
+def test_verbs_print_through_it() -> None:
+    raw = {
+        str(file.relative_to(CLI))
+        for file in CLI.rglob("*.py")
+        if "click.echo(" in file.read_text() or "click.secho(" in file.read_text()
+    }
+    assert raw == PRINT_RAW
