@@ -1,18 +1,21 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 // How much do many publishers and subscriptions of one topic slow each other down?
 //
-//   matches endpoints=N iterations=N measure=create|close|depart|beside|publish depth=N
+//   matches endpoints=N iterations=N measure=create|close|depart|retire|beside|publish depth=N
 //
 // With `endpoints` endpoints of each kind, one process prints how long it takes
 //   create   to create one more subscription,
 //   close    to close one subscription,
 //   depart   to close one more publisher, whose message is not taken; closing it also sweeps the
 //            publisher before, whose message it displaced,
+//   retire   to close a publisher and a subscription of a topic of their own, whose message is not
+//            taken; all publishers are closed first,
 //   beside   to create a publisher of another topic, from a second thread, while the first creates
 //            and closes all of them,
 //   publish  to publish; nothing is taken, so with a small depth each queue is full.
 #include <atomic>
 #include <memory>
+#include <string>
 #include <thread>
 
 #include "bench/node.hpp"
@@ -86,6 +89,32 @@ std::vector<int64_t> depart(Node & node, const Arguments & arguments) {
   return samples_ns;
 }
 
+std::vector<int64_t> retire(Node & node, const Arguments & arguments) {
+  const size_t count = arguments.number("endpoints");
+  const rmw_qos_profile_t qos = reliable_qos(arguments.number("depth"));
+  Message message;
+  message.data.resize(64);
+  std::vector<std::unique_ptr<Publisher>> publishers;
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
+  for (size_t i = 0; i < count; ++i) {
+    const std::string own = topic + std::to_string(i);
+    publishers.push_back(std::make_unique<Publisher>(node, own.c_str(), qos));
+    subscriptions.push_back(std::make_unique<Subscription>(node, own.c_str(), qos));
+  }
+  for (const auto & publisher : publishers) {
+    wait_until_matched(*publisher, 1);
+    publisher->publish(message);
+  }
+  std::vector<int64_t> samples_ns;
+  for (auto & publisher : publishers) {
+    samples_ns.push_back(duration_ns([&] { publisher.reset(); }));
+  }
+  for (size_t i = 0; i < count; ++i) {
+    samples_ns[i] += duration_ns([&] { subscriptions[i].reset(); });
+  }
+  return samples_ns;
+}
+
 std::vector<int64_t> beside(Node & node, const Arguments & arguments) {
   std::vector<int64_t> samples_ns;
   std::atomic<bool> done{false};
@@ -126,6 +155,7 @@ int main(int argc, char ** argv) {
       measure == "create"   ? one_more(node, arguments, Half::create)
       : measure == "close"  ? one_more(node, arguments, Half::close)
       : measure == "depart" ? depart(node, arguments)
+      : measure == "retire" ? retire(node, arguments)
       : measure == "beside" ? beside(node, arguments)
                             : publish(node, arguments));
   });

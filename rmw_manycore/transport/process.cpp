@@ -225,6 +225,9 @@ void Process::Impl::leave() {
     const Registry::Lock lock(*registry, registry->parting_wait_ns());
     registry->tracer().note(TraceKind::leave);
     registry->tracer().unfollow();
+    if (registry->header().closing_count != 0) {
+      registry->clusters().at(placement.cluster).wake_reaper();  // the sweep was a brief one
+    }
     leave_registry(*registry, slot);
   }
   registry->graph_changed();

@@ -57,6 +57,7 @@ const Role half_reaper("half_reaper", [](Lines & test, const Arguments & argumen
   EndpointEntry & entry = registry.endpoints()[slot];
   entry.slot.state.store(SlotState::closing);
   registry.unlink_endpoint(slot);
+  registry.header().closing.add(slot);
   ++registry.header().closing_count;
   auto & header = *registry.clusters().find<SubscriptionHeader>(entry.block);
   visit_source_table(registry.clusters().at(1), header, [](SourceEntry & source, uint32_t) {

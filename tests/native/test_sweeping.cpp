@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "drivers_of_test.hpp"
@@ -28,6 +29,25 @@ size_t close(Registry & registry, uint32_t slot) {
     closed = closing::close_some(registry, slot, false, turn);
   }
   return turns;
+}
+
+/// Subscriptions of topics of their own, each with a message of a publisher that is gone.
+std::vector<std::unique_ptr<Subscription>> keep_messages(
+  Fixture & f, size_t count, size_t first = 0) {
+  std::vector<std::unique_ptr<Subscription>> readers;
+  for (size_t i = first; i < first + count; ++i) {
+    const EndpointSpec spec = on_topic("/kept" + std::to_string(i), keep_last(1));
+    readers.push_back(f.process->create_subscription(spec));
+    publish(*f.process->create_publisher(spec), 1);
+  }
+  return readers;
+}
+
+/// Closed endpoints that the round in progress has passed.
+size_t passed_endpoints(const RegistryHeader & header) {
+  size_t passed = 0;
+  header.closing.for_each([&](uint32_t slot) { passed += slot < header.sweep_from ? 1 : 0; });
+  return passed;
 }
 
 }  // namespace
@@ -326,4 +346,42 @@ TEST_CASE("the reaper is woken for what the last reader could not free, with the
   }
   wait_until("the wake-up of the reaper", [&] { return cluster.messages.load() == 2; });
   wait_until("the topic DSM is freed", [&] { return f.inspection.closing_endpoints() == 0; });
+}
+
+TEST_CASE("what subscriptions keep costs each graph change a few looks, and all is looked at") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr size_t many = 100;
+  constexpr size_t max_looks = 16;  // a change is a creation and a destruction
+  const auto readers = keep_messages(f, many);
+  REQUIRE(f.inspection.closing_endpoints() == many);
+  RegistryHeader & header = f.inspection.registry().header();
+  header.sweep_from = 0;
+  f.sweep();
+  CHECK(passed_endpoints(header) > 0);
+  CHECK(passed_endpoints(header) <= max_looks);
+  const auto newer = f.process->create_publisher(on_topic("/kept0", keep_last(1)));
+  publish(*newer, 2);  // nothing tells that the message of /kept0 is not wanted any more
+  for (size_t looks = 0; looks < many; looks += max_looks / 2) {
+    f.sweep();
+  }
+  CHECK(f.inspection.closing_endpoints() == many - 1);
+}
+
+TEST_CASE("a subscription that closes frees what it alone kept, however much others keep") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  const auto last_reader = f.subscription(keep_last(1));
+  auto stuck = f.subscription(keep_last(10));
+  std::vector<std::vector<std::unique_ptr<Subscription>>> readers;
+  for (size_t i = 0; i < 10; ++i) {
+    f.drive(1);
+    readers.push_back(keep_messages(f, 20, 20 * i));
+  }
+  const uint32_t kept = f.inspection.closing_endpoints();
+  REQUIRE(kept == 10 * 20 + 10);
+  stuck.reset();
+  CHECK(f.inspection.closing_endpoints() == kept - 9);  // the newest is the last reader's
+  CHECK(take_all(*last_reader) == numbers(10, 10));
+  CHECK(f.inspection.closing_endpoints() == kept - 10);
 }

@@ -192,6 +192,8 @@ struct MatchInHand {
 
 using GraphWatchers = SlotSet<process_capacity>;
 static_assert(sizeof(GraphWatchers) == 128);
+using ClosingEndpoints = SlotSet<endpoint_capacity>;
+static_assert(sizeof(ClosingEndpoints) == 4096);
 
 /// Head of the registry; its tables follow at the offsets below.
 struct RegistryHeader {
@@ -206,7 +208,7 @@ struct RegistryHeader {
   TableHead nodes;
   TableHead endpoints;
   uint32_t topic_count;
-  uint32_t closing_count;                  ///< endpoints in a state from closing on (derived)
+  uint32_t closing_count;                  ///< number of slots in `closing` (derived)
   std::atomic<uint64_t> clusters_present;  ///< bit c - 1: cluster c has a segment
   std::atomic<uint32_t> removed;           ///< 1 = the files are removed; no process can join
   uint32_t needs_repair;  ///< an owner of the mutex died and its changes are not repaired yet
@@ -218,6 +220,7 @@ struct RegistryHeader {
   /// adds its wake word to WakeWords::graph; the slot is removed when it is given back and when it
   /// is taken anew. Model: docs/model/waiting.pml.
   GraphWatchers graph_watchers;
+  ClosingEndpoints closing;           ///< endpoints in a state from closing on (derived)
   std::atomic<uint64_t> death_count;  ///< incremented after the entry in `deaths` is written
   Death deaths[kept_deaths];  ///< ring; the next death goes to index death_count mod kept_deaths
   std::atomic<uint32_t> topic_buckets[topic_bucket_count];

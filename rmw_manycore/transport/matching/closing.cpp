@@ -26,6 +26,25 @@ void count_unmatched(Registry & registry, EndpointEntry & entry) {
   notify_event_watchers(registry, entry.process);
 }
 
+bool has_readers(const Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
+  constexpr uint32_t entries_in_a_step = 16;
+  bool found = false;
+  visit_reader_table(cluster, dsm, [&](const ReaderEntry & entry, uint32_t index) {
+    turn.spend(index % entries_in_a_step == 0 ? 1 : 0);
+    found = entry.active.load(std::memory_order_acquire) != 0;
+    return found;
+  });
+  return found;
+}
+
+/// True if the publisher of a source is gone, and no subscription reads its topic DSM any more.
+bool is_unread(Registry & registry, const SourceEntry & source, Turn & turn) {
+  TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
+  return dsm != nullptr && dsm->orphan.load() != 0 &&
+         !has_readers(
+           registry.clusters().at(SegmentRef{source.topic_dsm.load()}.cluster()), *dsm, turn);
+}
+
 /// `subscription`: slot of that of the source.
 void undo_match(Registry & registry, SourceEntry & source, uint32_t subscription) {
   const SourceState state = source.state.load();
@@ -43,7 +62,8 @@ void undo_match(Registry & registry, SourceEntry & source, uint32_t subscription
 /// Undoes matches until the turn is over; true when none is left. `closed_before` advances after
 /// each match, so if this process dies, at most one is undone twice: its source is then `revoked`,
 /// and its reader may still be in the reader table.
-bool close_some_of_subscription(Registry & registry, uint32_t endpoint, Turn & turn) {
+bool close_some_of_subscription(
+  Registry & registry, uint32_t endpoint, Turn & turn, std::vector<uint32_t> * unread) {
   const EndpointEntry & entry = registry.endpoints()[endpoint];
   Cluster * const cluster = registry.map_cluster(entry.block.cluster());
   auto * const header = registry.map<SubscriptionHeader>(entry.block);
@@ -61,6 +81,9 @@ bool close_some_of_subscription(Registry & registry, uint32_t endpoint, Turn & t
       if (source.state.load() != SourceState::free) {
         undo_match(registry, source, endpoint);
         turn.spend(steps_of_a_match);
+        if (unread != nullptr && is_unread(registry, source, turn)) {
+          unread->push_back(source.topic_dsm_endpoint.load());
+        }
       }
       header->closed_before = index + 1;
       return false;
@@ -152,16 +175,18 @@ void wake_reaper(Registry & registry, uint32_t process) {
 
 }  // namespace
 
-bool close_some(Registry & registry, uint32_t endpoint, bool died, Turn & turn) {
+bool close_some(
+  Registry & registry, uint32_t endpoint, bool died, Turn & turn, std::vector<uint32_t> * unread) {
   EndpointEntry & entry = registry.endpoints()[endpoint];
   if (entry.slot.state.load() == SlotState::live) {
     entry.slot.state.store(SlotState::closing);
     registry.unlink_endpoint(endpoint);
+    registry.header().closing.add(endpoint);
     ++registry.header().closing_count;
   }
   const bool done = entry.kind == EndpointKind::publisher
                       ? close_some_of_publisher(registry, endpoint, died, turn)
-                      : close_some_of_subscription(registry, endpoint, turn);
+                      : close_some_of_subscription(registry, endpoint, turn, unread);
   if (done && entry.slot.state.load() == SlotState::closing) {
     entry.slot.state.store(SlotState::closed);
   }

@@ -13,8 +13,11 @@ namespace manycore::closing {
 /// are undone; the endpoint's memory is freed by sweeping. The caller holds the registry lock. May
 /// be repeated after a caller died midway. `died`: the endpoint's process is dead, so hints of its
 /// last records may not have been pushed. Throws ClusterUnmappable if this process cannot map the
-/// cluster of a match; the endpoint then stays `closing`.
-bool close_some(Registry & registry, uint32_t endpoint, bool died, Turn & turn);
+/// cluster of a match; the endpoint then stays `closing`. `unread`: gets the slots of publishers
+/// that are gone, and whose last reader the endpoint was.
+bool close_some(
+  Registry & registry, uint32_t endpoint, bool died, Turn & turn,
+  std::vector<uint32_t> * unread = nullptr);
 
 /// Closes all endpoints of a process that creates no more of them, turn by turn. The caller takes
 /// the registry lock anew for each turn.

@@ -99,6 +99,7 @@ void Registry::repair() {
       cluster->mark_charged(processes_[slot].charged_bytes);
     }
   }
+  header().closing.clear();
   header().closing_count = 0;
   std::vector<uint32_t> live;
   for (uint32_t slot = 0; slot < endpoints_.high_water(); ++slot) {
@@ -111,6 +112,7 @@ void Registry::repair() {
     if (state == SlotState::live) {
       live.push_back(slot);
     } else {
+      header().closing.add(slot);
       ++header().closing_count;
     }
   }

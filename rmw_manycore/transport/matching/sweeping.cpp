@@ -7,8 +7,9 @@ namespace manycore::sweeping {
 namespace {
 
 constexpr uint64_t steps_of_a_slot = 1;
-/// Steps without progress before a process returns to its own work: about 0.5 ms.
-constexpr uint64_t max_idle_steps = 8 * Turn::steps;
+/// Looks in a row that freed nothing, after which a process returns to its own work: a few
+/// microseconds, and at most as many turns.
+constexpr uint32_t max_idle_looks = 8;
 
 /// True for an endpoint that a live process left closing because it could not map a cluster, or
 /// that a process left whose threads are ending one by one. Endpoints of dead processes are left to
@@ -35,6 +36,7 @@ Progress sweep_endpoint(
                               : sweep_subscription(registry, entry, turn);
   if (progress == Progress::freed) {
     registry.endpoints().give_back(slot);
+    registry.header().closing.remove(slot);
     --registry.header().closing_count;
   }
   return progress;
@@ -46,46 +48,58 @@ bool Round::try_to_sweep(uint32_t slot, Turn & turn) {
   const bool is_fresh = turn.spent() < Turn::steps / 8;
   try {
     const Progress progress = sweep_endpoint(registry_, wanted_, pass_, slot, turn);
-    if (progress == Progress::turn_over && leaves_long_looks_ && is_fresh && wanted_.is_looking()) {
+    const bool has_freed = progress == Progress::freed || progress == Progress::freed_some;
+    idle_looks_ = has_freed ? 0 : idle_looks_ + 1;
+    if (progress == Progress::turn_over && is_brief_ && is_fresh && wanted_.is_looking()) {
       needs_reaper_ = true;
       return true;
     }
-    has_freed_ = has_freed_ || progress == Progress::freed || progress == Progress::freed_some;
     needs_reaper_ = needs_reaper_ || progress == Progress::in_use;
     return progress != Progress::freed_some && progress != Progress::turn_over;
   } catch (const ClusterUnmappable &) {
+    ++idle_looks_;
     needs_reaper_ = true;
     return true;
   }
 }
 
-bool Round::sweep_some() {
-  Turn turn;
-  has_freed_ = false;
-  const bool looked_at_all = sweep_until(turn);
-  idle_steps_ = has_freed_ ? 0 : idle_steps_ + turn.spent();
-  return looked_at_all;
-}
-
-/// Continues with the endpoint that the last turn left unfinished: what a look has found is known
-/// to this round only. Then goes on where the last round of any process ended.
-bool Round::sweep_until(Turn & turn) {
+/// The next closed endpoint, from where the last round of any process ended. Nothing once this
+/// round has passed all slots.
+std::optional<uint32_t> Round::next_closing() {
   RegistryHeader & header = registry_.header();
   const uint32_t end = registry_.endpoints().high_water();
-  for (; header.closing_count != 0 && looked_at_ < end; ++looked_at_) {
+  const uint32_t from = header.sweep_from < end ? header.sweep_from : 0;
+  const std::optional<uint32_t> next =
+    header.closing_count == 0 ? std::nullopt : header.closing.next(from, end);
+  if (!next) {
+    return std::nullopt;
+  }
+  passed_slots_ += *next >= from ? *next - from + 1 : *next + end - from + 1;
+  return passed_slots_ > end ? std::nullopt : next;
+}
+
+/// Begins with the endpoint that the last turn left unfinished: what a look has found is known to
+/// this round only.
+bool Round::sweep_some() {
+  Turn turn;
+  while (!is_brief_ || idle_looks_ < max_idle_looks) {
     if (turn.is_over()) {
       return false;
     }
     turn.spend(steps_of_a_slot);
-    const uint32_t next = header.sweep_from < end ? header.sweep_from : 0;
-    const uint32_t slot = unfinished_.value_or(next);
-    if (!try_to_sweep(slot, turn)) {
-      unfinished_ = slot;
+    if (!unfinished_) {
+      unfinished_ = next_closing();
+      if (!unfinished_) {
+        return true;
+      }
+      registry_.header().sweep_from = *unfinished_ + 1;
+    }
+    if (!try_to_sweep(*unfinished_, turn)) {
       return false;
     }
     unfinished_.reset();
-    header.sweep_from = slot == next ? slot + 1 : next;  // another process may have gone on
   }
+  needs_reaper_ = needs_reaper_ || unfinished_;
   return true;
 }
 
@@ -102,17 +116,14 @@ void sweep_all(Registry & registry) {
   }
 }
 
-/// What a look has found is forgotten with its round, so that looks of more turns than it has would
-/// never end, and nothing behind them be freed.
 void sweep_a_little(Registry & registry, uint32_t cluster, long wait_ns) {
   Round round(registry);
-  round.leave_long_looks();
-  bool over = false;
-  while (!over && round.idle_steps() < max_idle_steps) {
+  round.be_brief();
+  for (bool over = false; !over;) {
     const Registry::Lock lock(registry, wait_ns);
     over = round.sweep_some();
   }
-  if (!over || round.needs_reaper()) {
+  if (round.needs_reaper()) {
     registry.clusters().at(cluster).wake_reaper();
   }
 }

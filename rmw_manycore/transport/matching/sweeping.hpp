@@ -15,46 +15,44 @@
 /// stopped or died.
 namespace manycore::sweeping {
 
-/// One check of all endpoints, in as many turns as needed.
+/// One check of all closed endpoints, in as many turns as needed.
 class Round {
 public:
   explicit Round(Registry & registry) noexcept : registry_(registry), wanted_(registry) {}
-  /// From now on passes over an endpoint whose records take more than a turn to look at.
-  void leave_long_looks() noexcept { leaves_long_looks_ = true; }
+  /// For a process with work of its own: the round ends after a few looks that free nothing, and
+  /// passes over an endpoint whose records take more than a turn to look at. What a look has found
+  /// is forgotten with its round, so it would never end in rounds of fewer turns than it takes.
+  void be_brief() noexcept { is_brief_ = true; }
 
-  /// One turn. True when all endpoints were checked. The caller holds the registry lock.
+  /// One turn. True when the round is over. The caller holds the registry lock.
   bool sweep_some();
   /// One turn for one endpoint. True when its check is complete. The caller holds the lock.
   bool sweep_some_of(uint32_t endpoint);
   /// True if an endpoint is left that no process is sure to sweep by itself: this one could not map
-  /// a cluster or left a long look, or another one was accessing the memory.
+  /// a cluster or left a look, or another one was accessing the memory.
   bool needs_reaper() const noexcept { return needs_reaper_; }
-  /// Steps since this round last freed memory.
-  uint64_t idle_steps() const noexcept { return idle_steps_; }
 
 private:
-  /// False if the turn ended before all endpoints were checked.
-  bool sweep_until(Turn & turn);
+  std::optional<uint32_t> next_closing();
   /// False if the turn ended before the check was complete.
   bool try_to_sweep(uint32_t slot, Turn & turn);
 
   Registry & registry_;
   WantedSources wanted_;
   ReaderPass pass_;
-  uint32_t looked_at_ = 0;                ///< slots checked so far
+  uint32_t passed_slots_ = 0;             ///< checked, or not closing
   std::optional<uint32_t> unfinished_{};  ///< slot with which the next turn begins
-  bool has_freed_ = false;                ///< in this turn
-  uint64_t idle_steps_ = 0;
+  uint32_t idle_looks_ = 0;               ///< since the last one that freed memory
   bool needs_reaper_ = false;
-  bool leaves_long_looks_ = false;
+  bool is_brief_ = false;
 };
 
 /// A complete round. Takes the registry lock anew for each turn.
 void sweep_all(Registry & registry);
 
-/// Sweeps one round for a process of `cluster` that creates or closes an endpoint. Ends early after
-/// about 0.5 ms without progress, and leaves long looks. Wakes the cluster's reaper for endpoints
-/// that are then left (see Round::needs_reaper()).
+/// Sweeps a brief round for a process of `cluster` that creates or closes an endpoint: what is kept
+/// costs each of them the same, however much it is. Wakes the cluster's reaper if needed (see
+/// Round::needs_reaper()).
 void sweep_a_little(
   Registry & registry, uint32_t cluster, long wait_ns = Registry::Lock::usual_wait_ns);
 

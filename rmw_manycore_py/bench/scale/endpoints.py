@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Mutual cost of many publishers and subscriptions of one topic."""
+"""Mutual cost of many publishers and subscriptions, of one topic or of as many."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from rmw_manycore_py.bench.summary import Goal, Result
 CREATE = "creating a subscription"
 CLOSE = "closing a subscription"
 DEPART = "closing a publisher whose message is not taken"
+RETIRE = "closing a publisher and a subscription of one of as many topics, a message in each"
 BESIDE = "creating a publisher of another topic meanwhile"
 PUBLISH = "publishing to a topic with as many publishers"
 ENDPOINTS = (25, 50, 100, 200, 400, 800)
@@ -54,6 +55,7 @@ def _match(run: Run, middleware: Middleware, count: int) -> list[Result]:
         on_curve(CREATE, name, count, "endpoints", "us", samples_us("create", 1)),
         on_curve(CLOSE, name, count, "endpoints", "us", samples_us("close", 1)),
         on_curve(DEPART, name, count, "endpoints", "us", samples_us("depart", 1)),
+        on_curve(RETIRE, name, count, "endpoints", "us", samples_us("retire", 1)),
         *([on_curve(BESIDE, name, count, "endpoints", "us", beside)] if beside else []),
         *(
             on_curve(
@@ -80,6 +82,13 @@ GOALS = (
         at_count(INSIDE.name, 800, "endpoints"),
         "within",
         16,
+        at_count(INSIDE.name, 100, "endpoints"),
+    ),
+    Goal(
+        RETIRE,
+        at_count(INSIDE.name, 800, "endpoints"),
+        "within",
+        2,
         at_count(INSIDE.name, 100, "endpoints"),
     ),
 )
