@@ -62,5 +62,8 @@ class End(Closing):
         finally:
             os.close(descriptor)
 
-    def _timeout(self, what: str, timeout_s: float | None) -> TransportTimeoutError:
-        return TransportTimeoutError(f"{self._subject}: {what} within {timeout_s:g} s")
+    def _timeout(
+        self, what: str, timeout_s: float | None, advice: str = ""
+    ) -> TransportTimeoutError:
+        text = f"{self._subject}: {what} within {timeout_s:g} s"
+        return TransportTimeoutError(f"{text}; {advice}" if advice else text)

@@ -25,6 +25,12 @@ from rmw_manycore_py.transport.errors import TransportError
 # As for topics with `synchronous: true`.
 SYNCHRONOUS_TIMEOUT_S = 0.1
 
+_DROPPED = "it was dropped: send it again"
+_IN_PIPE = (
+    "it is in the pipe and may still be received: do not send it again; a later synchronous "
+    "message of its priority confirms it, too"
+)
+
 
 class MessageSender(End):
     """Sends messages to the one `MessageReceiver` of the same name, through a pipe per priority.
@@ -67,6 +73,7 @@ class MessageSender(End):
         :param synchronous: wait until the other side has received it.
         :param timeout_s: limit for all of a synchronous send, in seconds.
         :raises TransportTimeoutError: if a synchronous message was not received within the timeout.
+            The text says whether it was dropped, or is in the pipe and may still be received.
         :raises PeerGoneError: if the other process has ended, or closed its end.
         :raises TransportError: if a message can never fit in the pipe, or an argument is invalid.
         """
@@ -120,11 +127,10 @@ class MessageSender(End):
             while not pipe.try_write(packet):
                 if not self._wait(deadline, [pipe.descriptor]):
                     self.dropped += 1
-                    raise self._timeout("the pipe had no room", timeout_s)
+                    raise self._timeout("the pipe had no room", timeout_s, _DROPPED)
         while self._received != self._number:
             if not self._wait(deadline):
-                text = "the message is in the pipe, but was not received"
-                raise self._timeout(text, timeout_s)
+                raise self._timeout("the message was not yet received", timeout_s, _IN_PIPE)
 
     def _wait(self, deadline: Deadline, writable: Iterable[int] = ()) -> bool:
         """Sleep until there is a note, or room; False after the deadline."""

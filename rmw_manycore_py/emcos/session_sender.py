@@ -15,6 +15,9 @@ from rmw_manycore_py.emcos.uc import Uc
 from rmw_manycore_py.transport.arguments import Deadline, checked_number
 from rmw_manycore_py.transport.errors import refusal
 
+_NOT_BEGUN = "this one was not begun: send it again"
+_PENDING = "it will be, once the other side releases its own: wait() before writing it"
+
 
 class SessionSender(SessionEnd):
     """Has a UC, a thread, move its buffer to that of the one `SessionReceiver` of the same name.
@@ -85,6 +88,7 @@ class SessionSender(SessionEnd):
         :param timeout_s: limit of a synchronous send, in seconds; None waits indefinitely.
         :return: False if the last transfer was not moved yet: this one is dropped, and counted.
         :raises TransportTimeoutError: if a synchronous transfer was not moved within the timeout.
+            The text says whether it was not begun, or will still be moved.
         :raises PeerGoneError: if the other process has ended, or closed its end.
         """
         size = self.size_bytes if size_bytes is None else size_bytes
@@ -93,7 +97,7 @@ class SessionSender(SessionEnd):
         with system_errors(self._subject):
             uc = self._opened_uc()
             if synchronous and not uc.wait(deadline):
-                raise self._timeout("the last transfer was not moved", timeout_s)
+                raise self._timeout("the last transfer was not yet moved", timeout_s, _NOT_BEGUN)
             if not uc.request(size):
                 self.dropped += 1
                 return False
@@ -119,7 +123,7 @@ class SessionSender(SessionEnd):
 
     def _wait(self, deadline: Deadline, timeout_s: float | None) -> None:
         if not self._opened_uc().wait(deadline):
-            raise self._timeout("the buffer was not moved", timeout_s)
+            raise self._timeout("the buffer was not yet moved", timeout_s, _PENDING)
         self._link.require_peer()
 
     def _opened_uc(self) -> Uc:

@@ -103,7 +103,8 @@ def test_a_full_pipe_drops_and_counts(start, platform: str) -> None:
         assert sender.send(b"last"), "what was dropped took no room"
         peer.say("")
         peer.wait_for(f"^got {3 * PACKET} ")
-        with pytest.raises(TransportTimeoutError, match=r"the pipe had no room within 0.01 s"):
+        no_room = r"the pipe had no room within 0.01 s; it was dropped: send it again"
+        with pytest.raises(TransportTimeoutError, match=no_room):
             sender.send(bytes(8 * PACKET), synchronous=True, timeout_s=0.01)
         assert sender.dropped == 2
         assert sender.send(b"higher", priority=7), "each priority has a pipe"
@@ -118,13 +119,15 @@ def test_a_full_pipe_drops_and_counts(start, platform: str) -> None:
 def test_a_synchronous_message_waits_for_its_receiver(start, platform: str) -> None:
     peer = start(peer_command(receive_on_request))
     with emcos.MessageSender("t", platform=platform, **WAITS) as sender:
-        with pytest.raises(TransportTimeoutError, match=r"but was not received within 0.01 s"):
+        not_yet = r"was not yet received within 0.01 s; it is in the pipe and may still be received"
+        with pytest.raises(TransportTimeoutError, match=not_yet):
             sender.send(b"", synchronous=True, timeout_s=0.01)
         peer.say("")
         peer.say("")
         assert sender.send(b"\1" * (4 << 20), synchronous=True, **WAITS), "larger than the pipe"
         peer.wait_for("^got 0 0$")
         peer.wait_for(f"^got {4 << 20} {4 << 20}$")
+        assert sender.dropped == 0
 
 
 def send_synchronously() -> None:
@@ -211,6 +214,30 @@ def test_a_session_moves_one_buffer_to_the_other(start, platform: str) -> None:
         assert list(session) == []
     assert peer.wait() == 0, peer
     assert "dropped 1" in peer.lines
+
+
+def release_on_request() -> None:
+    with emcos.SessionReceiver("s", SIZE) as session:
+        while sys.stdin.readline():
+            announce(f"moved {session.receive(TIMEOUT_S)[:1]}")
+
+
+def test_a_synchronous_transfer_that_is_late_is_moved_later(start, platform: str) -> None:
+    peer = start(peer_command(release_on_request))
+    with emcos.SessionSender("s", SIZE, platform=platform, **WAITS) as session:
+        session.buffer[:] = 1
+        session.send(synchronous=True, **WAITS)
+        session.buffer[:] = 2
+        with pytest.raises(TransportTimeoutError, match=r"was not yet moved .*: wait\(\) before"):
+            session.send(synchronous=True, timeout_s=0.01)
+        with pytest.raises(TransportTimeoutError, match=r"this one was not begun: send it again"):
+            session.send(synchronous=True, timeout_s=0.01)
+        peer.say("")
+        peer.say("")  # releases the first
+        session.wait(TIMEOUT_S)
+        peer.wait_for(r"^moved \[1\]$")
+        peer.wait_for(r"^moved \[2\]$")
+        assert session.dropped == 0
 
 
 def hold_sessions(count: int) -> None:

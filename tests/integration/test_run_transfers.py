@@ -21,7 +21,7 @@ TRANSFERS = {
     "transfer: session": "session",
     "transfer: async": "async",
 }
-LATE = "it is synchronous, and cluster 2 has not received the message within 100 ms"
+LATE = "it is synchronous, and cluster 2 has not yet received the message after 100 ms"
 RESTARTS = 20  # of the talker that publishes synchronously
 
 

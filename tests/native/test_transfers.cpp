@@ -15,6 +15,7 @@ using namespace manycore;
 using transfer_of_test::by;
 using transfer_of_test::Fixture;
 using transfer_of_test::kinds;
+using transfer_of_test::open_pipe;
 using transfer_of_test::packets_in;
 
 namespace {
@@ -142,11 +143,33 @@ TEST_CASE("synchronous: publish returns when the message is there, or says that 
   const pid_t pid = f.platform.stop_receive_thread(2);
   const Refusal refusal = refusal_of([&] { publish(*f.publisher, first + 1); });
   CHECK(refusal.code == ErrorCode::timeout);
-  CHECK(refusal.says("cluster 2 has not received"));
+  CHECK(refusal.says("cluster 2 has not yet received the message after 100 ms"));
+  CHECK(refusal.says("it may still arrive"));
   kill(pid, SIGCONT);
   f.expect(first + 1, first + 1);  // it was handed over, and comes late
   const uint64_t last = publish_until_received(f, first + 2);
   f.subscriber->ask("take_ordered " + std::to_string(last) + " 1");
+}
+
+TEST_CASE("synchronous: publish says that it had no room, and what is published again arrives") {
+  Fixture f(by(Transfer::message, 0, true));
+  const uint64_t first = publish_until_received(f, 1);
+  f.subscriber->ask("take_ordered " + std::to_string(first) + " 1");
+  const uint64_t dropped = f.dropped();
+  const pid_t pid = f.platform.stop_receive_thread(2);
+  const FileDescriptor pipe = open_pipe(f.platform.paths().data_pipe(2, 0));
+  const std::vector<uint8_t> rubbish(sizeof(Packet), 0xff);
+  while (write(pipe.get(), rubbish.data(), rubbish.size()) > 0) {
+  }
+  const Refusal refusal = refusal_of([&] { publish(*f.publisher, first + 1); });
+  CHECK(refusal.code == ErrorCode::timeout);
+  CHECK(refusal.says("cluster 2 had no room for the message within 100 ms"));
+  CHECK(refusal.says("publish it again"));
+  CHECK(f.dropped() == dropped + 1);
+  kill(pid, SIGCONT);
+  const uint64_t last = publish_until_received(f, first + 2);
+  const std::string taken = f.subscriber->ask("take_ordered " + std::to_string(last) + " 1");
+  CHECK(std::stoull(taken) < last - first);  // without the one that was dropped
 }
 
 TEST_CASE("packets of the highest priority are received first") {

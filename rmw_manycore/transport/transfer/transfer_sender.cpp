@@ -29,7 +29,7 @@ TransferSender::TransferSender(
 
 void TransferSender::begin(uint64_t number) noexcept {
   if (std::exchange(number_, number) != number) {
-    late_cluster_ = 0;
+    late_ = {};
     until_ns_ = is_synchronous_ ? monotonic_ns() + max_blocking_ns : 0;
   }
 }
@@ -95,7 +95,8 @@ bool TransferSender::hand_over(
     (publisher_.transfer == Transfer::session ? own_ : receiver).header().successors;
   const uint64_t before = successors.load(std::memory_order_seq_cst);
   Carried carried = carry(announcement, landing, receiver);
-  if (carried != Carried::dropped && !note_handed(header, successors, before)) {
+  const bool may_arrive = carried != Carried::dropped;
+  if (may_arrive && !note_handed(header, successors, before)) {
     carried = Carried::dropped;
   }
   if (carried == Carried::dropped) {
@@ -105,20 +106,33 @@ bool TransferSender::hand_over(
   }
   header.closed.store(number_, std::memory_order_seq_cst);
   if (is_synchronous_ && carried != Carried::handed && Landing::of(own_, dsm_, receiver)) {
-    late_cluster_ = receiver.id();  // unless its last subscription has left meanwhile
+    note_late({receiver.id(), may_arrive});  // unless its last subscription has left meanwhile
   }
   return carried == Carried::dropped ? is_told_of_drop(header, receiver.id())
                                      : carried != Carried::unannounced && !is_given_up(landing);
 }
 
-void TransferSender::require_received() {
-  if (const uint32_t cluster = std::exchange(late_cluster_, 0); cluster != 0) {
-    throw Error(
-      ErrorCode::timeout, "publish on '" + text_of(publisher_.topic) + "' timed out: it is " +
-                            "synchronous, and cluster " + std::to_string(cluster) +
-                            " has not received the message within " +
-                            std::to_string(max_blocking_ns / 1'000'000) + " ms");
+void TransferSender::note_late(const Late & late) noexcept {
+  if (late_.cluster == 0 || late_.may_arrive) {
+    late_ = late;
   }
+}
+
+void TransferSender::require_received() {
+  const Late late = std::exchange(late_, {});
+  if (late.cluster == 0) {
+    return;
+  }
+  const std::string time = std::to_string(max_blocking_ns / 1'000'000) + " ms";
+  const std::string advice =
+    late.may_arrive
+      ? " has not yet received the message after " + time +
+          "; it may still arrive: do not publish it again, unless a second copy does no harm"
+      : " had no room for the message within " + time + "; it was dropped there: publish it again";
+  throw Error(
+    ErrorCode::timeout, "publish on '" + text_of(publisher_.topic) +
+                          "' timed out: it is synchronous, and cluster " +
+                          std::to_string(late.cluster) + advice);
 }
 
 }  // namespace manycore

@@ -27,10 +27,17 @@ public:
   /// which they look.
   bool hand_over(const EmcosMessage & announcement, const Cluster & receiver) noexcept;
 
-  /// Throws Error{timeout} when the last record was to be received in time and was not.
+  /// Throws Error{timeout} when the last record was to be received in time and was not: it says
+  /// whether the record may still arrive.
   void require_received();
 
 private:
+  /// A cluster that has not confirmed the record in time.
+  struct Late {
+    uint32_t cluster = 0;
+    bool may_arrive = false;
+  };
+
   void begin(uint64_t number) noexcept;
   Carried carry(
     const EmcosMessage & announcement, const Landing & landing, const Cluster & receiver) noexcept;
@@ -38,6 +45,7 @@ private:
   bool note_handed(
     LandingHeader & landing, const std::atomic<uint64_t> & successors, uint64_t before) noexcept;
   void note_dropped(uint32_t cluster) noexcept;
+  void note_late(const Late & late) noexcept;
   bool is_told_of_drop(const LandingHeader & landing, uint32_t cluster) noexcept;
   /// True when the mover gave it up before `closed` was stored: readers looked too early.
   bool is_given_up(const Landing & landing) const noexcept;
@@ -48,10 +56,10 @@ private:
   TopicDsmHeader & dsm_;
   std::unique_ptr<Carrier> carrier_;
   const bool is_synchronous_;
-  uint64_t number_ = 0;        ///< of the record that is being handed over, or was last
-  int64_t until_ns_ = 0;       ///< CLOCK_MONOTONIC, of that record
-  uint32_t late_cluster_ = 0;  ///< has not confirmed that record in time
-  uint64_t dropping_ = 0;      ///< bit c - 1: cluster c was not given the record before
+  uint64_t number_ = 0;    ///< of the record that is being handed over, or was last
+  int64_t until_ns_ = 0;   ///< CLOCK_MONOTONIC, of that record
+  Late late_;              ///< one to which that record was not handed over comes first
+  uint64_t dropping_ = 0;  ///< bit c - 1: cluster c was not given the record before
 };
 
 }  // namespace manycore
