@@ -1,11 +1,12 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A bridge killed at work forwards each message once, or counts it as lost."""
+"""A bridge killed at work forwards each message once or not at all; a latched one at least once."""
 
 from __future__ import annotations
 
 import os
 import random
 import signal
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -30,6 +31,8 @@ KILLS = 3
 # A publisher outside may go on writing to the place of a killed process until its lease is over.
 LEASES_S = 4 * TIMEOUT_S
 LATCHED = {"durability": "transient_local", "depth": DEPTH}
+LAST = 200
+ALL_LATCHED = {"durability": "transient_local", "depth": LAST}
 
 
 def count_up(topic: str, words: dict[str, Any], period_s: float, last: int) -> None:
@@ -108,6 +111,50 @@ def test_what_a_killed_process_has_passed_on_is_dropped_and_counted(bridge) -> N
         wait_until(lambda: bridge.row("outward", "/numbers")["messages"], "the last one crosses")
     row = bridge.row("outward", "/numbers")
     assert (row["messages"], row["repeated"]) == (1, PASSED)
+
+
+def test_a_latched_message_that_was_noted_and_never_sent_is_passed_on(bridge) -> None:
+    """As by a process that was killed between the two: its successor cannot tell."""
+    route = bridge.route("outward", "/numbers")
+    viewer = bridge.outside(show_numbers, "/numbers", LATCHED)
+    viewer.wait_for("^listening$")
+    with _transport.Process(bridge.platform, 1, None, "source") as source:
+        latched = _transport.Qos(durability="transient_local", depth=DEPTH)
+        publisher = source.publisher("/numbers", STRING, latched)
+        before = CounterFile.create(status_path(bridge.platform, "outward", 0), [route])
+        before.rows[0].note_last(publisher.gid, PASSED)
+        before.close()
+        for _ in range(PASSED):
+            publisher.publish(EMPTY_STRING)
+        bridge.run(route)
+        for _ in range(PASSED):
+            viewer.wait_for("^heard")
+    row = bridge.row("outward", "/numbers")
+    assert (row["messages"], row["repeated"]) == (PASSED, PASSED)
+
+
+@pytest.mark.parametrize("direction", DIRECTIONS)
+def test_kills_lose_no_latched_message(bridge, direction) -> None:
+    """Each number is heard once, and at most once more after each kill, in order."""
+    source, target = sides(bridge, direction)
+    route = bridge.route(direction, "/numbers")
+    viewer = target(show_numbers, "/numbers", ALL_LATCHED)
+    viewer.wait_for("^listening$")
+    source(count_up, "/numbers", ALL_LATCHED, 0.02, LAST)
+    for _ in range(KILLS):
+        process = bridge.run(route)[direction]
+        viewer.skip_output()
+        for _ in range(random.randrange(1, LAST // 2)):
+            viewer.wait_for("^heard", LEASES_S)
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+    bridge.run(route)
+    everything = set(range(1, LAST + 1))
+    wait_until(lambda: set(heard(viewer)) == everything, "all are heard", LEASES_S)
+    numbers = heard(viewer)
+    assert max(map(numbers.count, everything)) <= KILLS + 1
+    steps_back = sum(after <= before for before, after in pairwise(numbers))
+    assert steps_back <= KILLS
 
 
 @pytest.mark.parametrize("by_pattern", [False, True])
