@@ -12,9 +12,9 @@ import random
 import time
 
 import pytest
+from graves import Graves
 from load import breed
 from processes import kill, processes_of, receive_threads_of
-from running_time import RunningTime
 from steady_load import RECOVERY_S, Load
 from support import (
     IS_MANYCORE,
@@ -29,40 +29,6 @@ SEED = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
 LONGEST_LIFE_S = 0.2  # lifetime of a victim: joining takes some milliseconds, and may be hit, too
 JOINING_S = 0.03  # about the time from the fork to the first message
 CLUSTERS = 2
-
-
-class Graves:
-    """Kills processes, and measures how long the platform still lists them as members."""
-
-    def __init__(self, platform: str, running_time: RunningTime) -> None:
-        self._platform = platform
-        self._running_time = running_time
-        self._killed_ns: dict[int, int] = {}
-
-    def kill(self, pid: int) -> None:
-        kill(pid)
-        self._killed_ns[pid] = time.monotonic_ns()
-
-    def assert_reclaimed(self) -> None:
-        """Check that no process in the registry has been dead for longer than RECOVERY_S."""
-        for pid in self._members():
-            assert self._running_time.since_s(self._killed_ns[pid]) <= RECOVERY_S, (
-                f"the platform still takes process {pid} for a member"
-            )
-
-    def assert_all_reclaimed(self) -> None:
-        self._running_time.wait_within(RECOVERY_S, lambda: not self._members(), "none is left")
-
-    def _members(self) -> list[int]:
-        """Return the killed processes that still have a slot in the registry."""
-        if not IS_MANYCORE:
-            return []
-        from rmw_manycore_py._transport import Platform
-
-        with Platform(self._platform) as platform:
-            processes = platform.processes()
-        dead = [process.pid for process in processes if not process.alive]
-        return [pid for pid in dead if pid in self._killed_ns]
 
 
 def some_receive_threads_of(platform: str) -> list[int]:
