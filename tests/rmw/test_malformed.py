@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 from c_support import rmw, rmw_handle, take_points
 from geometry_msgs.msg import Point
+from rcl_interfaces.msg import Parameter, ParameterDescriptor, SetParametersResult
+from rcl_interfaces.srv import DescribeParameters, SetParameters
 from rclpy._rclpy_pybind11 import RMWError
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.serialization import deserialize_message, serialize_message
@@ -26,6 +28,7 @@ HUGE = 0x7FFFFFFF.to_bytes(4, "little")
 HEADER = b"\x00\x01\x00\x00"  # plain CDR, little endian
 
 FIELD = PointField(name="x", count=1)
+ONE = b"\x01\x00\x00\x00"
 STRING = b"\x02\x00\x00\x00x\x00"  # "x" in CDR
 
 # Each a message, and the replacement of a part of its CDR.
@@ -62,9 +65,43 @@ if IS_MANYCORE:  # Fast DDS hands them out, and rclpy raises
     BROKEN |= TEXTS
 
 
-def broken(case: str) -> tuple[Any, bytes]:
+# Each a service type, and what breaks its request and its response.
+BROKEN_CALLS = {
+    "length_of_a_string": (
+        BasicTypes,
+        (BasicTypes.Request(string_value="x"), STRING[:4], HUGE),
+        (BasicTypes.Response(string_value="x"), STRING[:4], HUGE),
+    ),
+    "length_inside": (
+        SetParameters,
+        (SetParameters.Request(parameters=[Parameter(name="x")]), STRING[:4], HUGE),
+        (SetParameters.Response(results=[SetParametersResult(reason="x")]), STRING[:4], HUGE),
+    ),
+    "length_of_strings_and_of_messages": (
+        DescribeParameters,
+        (DescribeParameters.Request(names=["x"]), ONE + STRING, HUGE + STRING),
+        (
+            DescribeParameters.Response(descriptors=[ParameterDescriptor(name="x")]),
+            ONE + STRING,
+            HUGE + STRING,
+        ),
+    ),
+    "encapsulation": (
+        BasicTypes,
+        (BasicTypes.Request(), HEADER, b"\x00\x55\x00\x00"),
+        (BasicTypes.Response(), HEADER, b"\x00\x55\x00\x00"),
+    ),
+    "end": (
+        BasicTypes,
+        (BasicTypes.Request(string_value="x"), STRING, b""),
+        (BasicTypes.Response(string_value="x"), STRING, b""),
+    ),
+}
+
+
+def broken(case: tuple[Any, bytes, bytes]) -> tuple[Any, bytes]:
     """Return a message and its broken CDR."""
-    message, found, put = BROKEN[case]
+    message, found, put = case
     cdr = serialize_message(message)
     assert found in cdr
     return message, cdr.replace(found, put, 1)
@@ -72,7 +109,7 @@ def broken(case: str) -> tuple[Any, bytes]:
 
 @pytest.mark.parametrize("case", BROKEN)
 def test_a_node_goes_on(node, case):
-    message, cdr = broken(case)
+    message, cdr = broken(BROKEN[case])
     received: list[Any] = []
     publisher = node.create_publisher(type(message), "broken", 10)
     node.create_subscription(type(message), "broken", received.append, 10)
@@ -88,7 +125,7 @@ def test_a_node_goes_on(node, case):
 @pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS does not report it")
 def test_what_is_dropped_is_told(node, capfd):
     """By the event of lost messages and by a line in the log, but not by one line per message."""
-    _, cdr = broken("length_of_a_string")
+    _, cdr = broken(BROKEN["length_of_a_string"])
     publisher = node.create_publisher(String, "broken", 200)
     told: list[int] = []
     events = SubscriptionEventCallbacks(message_lost=lambda event: told.append(event.total_count))
@@ -111,7 +148,7 @@ def test_what_is_dropped_is_told(node, capfd):
 )
 def test_lengths_are_compared_with_what_is_left_before_memory_is_asked_for(node, case):
     """The type support would resize first, by several bytes for each byte received."""
-    message, cdr = broken(case)
+    message, cdr = broken(BROKEN[case])
     with pytest.raises(RMWError, match="claims more bytes than are left"):
         deserialize_message(cdr, type(message))
 
@@ -138,7 +175,7 @@ def test_lengths_are_read_in_the_order_of_their_message(node, big):
 
 def test_takes_in_c_find_the_next_message(node):
     """They skip broken messages and return RMW_RET_OK, in each of the ways to take."""
-    _, cdr = broken("end")
+    _, cdr = broken(BROKEN["end"])
     publisher = node.create_publisher(Point, "broken", 10)
     entity = node.create_subscription(Point, "broken", print, 10)
     subscription = rmw_handle("subscription", entity)
@@ -156,7 +193,7 @@ def test_takes_in_c_find_the_next_message(node):
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS lends only with data sharing")
 def test_loans_and_sequences_find_the_next_message(node):
-    _, cdr = broken("end")
+    _, cdr = broken(BROKEN["end"])
     publisher = node.create_publisher(Point, "broken", 10)
     entity = node.create_subscription(Point, "broken", print, 10)
     subscription = rmw_handle("subscription", entity)
@@ -176,31 +213,36 @@ def test_loans_and_sequences_find_the_next_message(node):
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="sends with the transport's own binding")
-def test_a_server_and_a_client_go_on(node, start_peer):
-    served: list[int] = []
+@pytest.mark.parametrize("case", BROKEN_CALLS)
+def test_a_server_and_a_client_go_on(node, start_peer, case):
+    """A request and a response that are malformed: as if sent by a client and by a server."""
+    service_type, *both = BROKEN_CALLS[case]
+    (request, broken_request), (_, broken_response) = (broken(one) for one in both)
+    served: list[Any] = []
 
     def serve(request: Any, response: Any) -> Any:
-        served.append(request.int64_value)
+        served.append(request)
         return response
 
-    node.create_service(BasicTypes, "ask", serve)
-    client = node.create_client(BasicTypes, "ask")
+    node.create_service(service_type, "ask", serve)
+    client = node.create_client(service_type, "ask")
     assert client.wait_for_service(TIMEOUT_S)
-    start_peer(send_nonsense).wait_for("sent")
-    answer = client.call_async(BasicTypes.Request(int64_value=7))
+    start_peer(send_nonsense, broken_request.hex(), broken_response.hex()).wait_for("sent")
+    answer = client.call_async(request)
     spin_until(node, answer.done)
-    assert served == [7]
+    assert served == [request]
     assert lost_messages("/ask", "request") == lost_messages("/ask", "reply") == 1
 
 
-def send_nonsense() -> None:
-    """Send a malformed request and a malformed response, to the server and to its client."""
+def send_nonsense(request: str, response: str) -> None:
+    """Send a malformed request to the server, and a malformed response to its client."""
     from rmw_manycore_py import _transport
 
+    data = {"request": bytes.fromhex(request), "reply": bytes.fromhex(response)}
     process = _transport.Process(os.environ["MANYCORE_PLATFORM"])
     for end in process.endpoints_of("/ask"):
         if end.kind == "subscription":
             sender = process.publisher("/ask", end.type, end.qos, role=end.role)
-            sender.publish(HEADER + b"abc", client=end.gid, number=1)
+            sender.publish(data[end.role], client=end.gid, number=1)
     announce("sent")
     sys.stdin.read()
