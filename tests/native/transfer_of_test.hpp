@@ -31,12 +31,13 @@ inline FileDescriptor open_pipe(const std::string & path) {
   return FileDescriptor(open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
 }
 
-inline size_t packets_in(const std::string & path) {
+inline size_t bytes_in(const std::string & path) {
   int bytes = 0;
   const FileDescriptor pipe = open_pipe(path);
   REQUIRE(ioctl(pipe.get(), FIONREAD, &bytes) == 0);
-  return static_cast<size_t>(bytes) / sizeof(Packet);
+  return static_cast<size_t>(bytes);
 }
+inline size_t packets_in(const std::string & path) { return bytes_in(path) / sizeof(Packet); }
 
 /// A publisher here, in cluster 1, and a subscriber in cluster 2.
 struct Fixture {
