@@ -29,6 +29,7 @@
 namespace {
 
 // Fixed and variable sizes, both kinds of strings, bounded and unbounded sequences, deep nesting.
+// Requests and responses are messages, which services take by the same code.
 constexpr const char * type_names[] = {
   "std_msgs/msg/String",
   "std_msgs/msg/Float64MultiArray",
@@ -58,6 +59,12 @@ constexpr const char * type_names[] = {
   "test_msgs/msg/BoundedSequences",
   "test_msgs/msg/UnboundedSequences",
   "test_msgs/msg/MultiNested",
+  "test_msgs/srv/Arrays_Request",
+  "test_msgs/srv/BasicTypes_Request",
+  "test_msgs/srv/Empty_Request",
+  "rcl_interfaces/srv/SetParameters_Request",
+  "rcl_interfaces/srv/SetParameters_Response",
+  "rcl_interfaces/srv/DescribeParameters_Response",
 };
 
 uint64_t seed = 1;

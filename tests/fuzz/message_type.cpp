@@ -18,15 +18,17 @@ constexpr const char * introspection_cpp = "rosidl_typesupport_introspection_cpp
 /// Type support from the library of a generated package, which stays loaded.
 const rosidl_message_type_support_t * load(const std::string & type, const std::string & library) {
   const size_t end_of_package = type.find('/');
+  const size_t end_of_kind = type.rfind('/');
   const std::string package = type.substr(0, end_of_package);
-  const std::string message = type.substr(type.rfind('/') + 1);
+  const std::string kind = type.substr(end_of_package + 1, end_of_kind - end_of_package - 1);
+  const std::string message = type.substr(end_of_kind + 1);
   const std::string file = "lib" + package + "__" + library + ".so";
   void * const handle = dlopen(file.c_str(), RTLD_LAZY);
   if (handle == nullptr) {
     throw std::runtime_error(dlerror());
   }
   const std::string symbol =
-    library + "__get_message_type_support_handle__" + package + "__msg__" + message;
+    library + "__get_message_type_support_handle__" + package + "__" + kind + "__" + message;
   using Getter = const rosidl_message_type_support_t * (*)();
   const auto getter = reinterpret_cast<Getter>(dlsym(handle, symbol.c_str()));
   if (getter == nullptr) {

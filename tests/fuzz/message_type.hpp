@@ -12,7 +12,8 @@ class MessageType {
 public:
   enum class Language { c, cpp };
 
-  /// `name` is like "std_msgs/msg/String". Throws std::runtime_error if its library is missing.
+  /// `name` is like "std_msgs/msg/String", or "std_srvs/srv/SetBool_Request". Throws
+  /// std::runtime_error if its library is missing.
   MessageType(const std::string & name, Language language);
 
   const std::string & name() const noexcept { return name_; }
