@@ -12,6 +12,7 @@
 #include "platform/bounded_flock.hpp"
 #include "platform/error.hpp"
 #include "platform/lock_owner.hpp"
+#include "platform/private_directory.hpp"
 
 namespace manycore {
 namespace {
@@ -57,7 +58,7 @@ bool FileLock::run(const std::string & path, int timeout_ms, const std::function
 std::optional<FileLock> FileLock::acquire(
   const std::string & path, int flags, int timeout_ms, const std::function<void()> & act) {
   while (true) {
-    FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0600));
+    FileDescriptor fd = open_private_file(path, O_RDWR | flags, 0600);
     if (!fd && errno == ENOENT) {
       return std::nullopt;
     }

@@ -14,9 +14,9 @@ namespace manycore {
 /// of the file which is at `path` by then.
 class FileLock {
 public:
-  /// Creates the file if it is missing. Waits at most `timeout_ms`, in which this process can run;
-  /// throws Error{timeout} naming the file and its owner. Empty if the directory of the file is
-  /// missing, because its last user has just removed it.
+  /// Creates the file if it is missing; see open_private_file(). Waits at most `timeout_ms`, in
+  /// which this process can run; throws Error{timeout} naming the file and its owner. Empty if the
+  /// directory of the file is missing, because its last user has just removed it.
   static std::optional<FileLock> acquire(const std::string & path, int timeout_ms);
   /// As acquire(), but empty if the file itself is missing.
   static std::optional<FileLock> acquire_existing(const std::string & path, int timeout_ms);

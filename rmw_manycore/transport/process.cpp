@@ -3,7 +3,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <map>
 #include <mutex>
@@ -12,6 +11,7 @@
 #include "platform/error.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 #include "transport/lifecycle/receive_thread_watcher.hpp"
+#include "transport/lifecycle/slot_and_line.hpp"
 #include "transport/lifecycle/trace_control.hpp"
 #include "transport/matching/closing.hpp"
 #include "transport/matching/connecting.hpp"
@@ -59,7 +59,6 @@ struct Process::Impl {
   /// First half of the other constructor: joins the platform.
   Impl(const Placement & placement_, JoinOnly);
 
-  uint32_t take_slot_and_line(std::unique_ptr<LifeThread> & life);
   uint32_t take_process_slot(std::unique_ptr<LifeThread> & life);
   void require_movers();
   uint32_t publish_endpoint(const EndpointSpec & spec, EndpointKind kind);
@@ -129,35 +128,11 @@ void Process::Impl::attach(uint32_t taken) {
   }
 }
 
-/// Takes a free slot and its line. Passes over lines that are held, by processes that have just
-/// given back their slots, or damaged.
-uint32_t Process::Impl::take_slot_and_line(std::unique_ptr<LifeThread> & life) {
-  Table<ProcessEntry> & processes = registry->processes();
-  std::vector<uint32_t> passed_over;
-  const auto give_back = [&] {
-    std::for_each(
-      passed_over.rbegin(), passed_over.rend(), [&](uint32_t slot) { processes.give_back(slot); });
-  };
-  try {
-    while (true) {
-      const uint32_t taken = processes.take("processes");
-      passed_over.push_back(taken);
-      lifeline = registry->lifelines().try_hold(taken, life);
-      if (lifeline) {
-        passed_over.pop_back();
-        give_back();
-        return taken;
-      }
-    }
-  } catch (...) {
-    give_back();
-    throw;
-  }
-}
-
 uint32_t Process::Impl::take_process_slot(std::unique_ptr<LifeThread> & life) {
   Table<ProcessEntry> & processes = registry->processes();
-  const uint32_t taken = take_slot_and_line(life);
+  SlotAndLine slot_and_line = take_slot_and_line(*registry, life);
+  const uint32_t taken = slot_and_line.slot;
+  lifeline = std::move(slot_and_line.line);
   ProcessEntry & entry = processes[taken];
   entry.pid = getpid();
   entry.cluster = placement.cluster;

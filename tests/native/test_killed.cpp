@@ -109,8 +109,8 @@ TEST_CASE("killed at any instruction while it takes messages") { check_kills("ta
 
 TEST_CASE("killed at any instruction while it reaps other dead processes") { check_kills("reaps"); }
 
-// The kernel ends the threads of a killed process one by one. The end of the main thread releases
-// the registry lock to another process while the thread that holds the lifeline still lives.
+// The kernel ends the threads of a killed process one by one. The registry lock is not taken over
+// while the thread that holds the lifeline lives.
 TEST_CASE("killed thread by thread while it closes: nothing is freed that publishers still use") {
   Fixture f;
   f.platform.receive_thread(1);
@@ -122,10 +122,12 @@ TEST_CASE("killed thread by thread while it closes: nothing is freed that publis
   }
   REQUIRE(f.inspection.readers_of(*f.publisher) == 3);
   child.end_main_thread();
-  f.process->create_publisher(on_topic("/y", keep_last(1)));  // sweeps
-  CHECK(f.inspection.readers_of(*f.publisher) == 2);
+  const Refusal refusal = refusal_of(
+    [&] { const Registry::Lock lock(f.inspection.registry(), Registry::Lock::short_wait_ns); });
+  CHECK(refusal.code == ErrorCode::timeout);
   child.kill();
   f.wait_until_alone();
+  CHECK(f.inspection.readers_of(*f.publisher) == 2);
   f.check_that_it_goes_on();
   CHECK(f.inspection.used_bytes() == used);
 }
@@ -178,11 +180,11 @@ TEST_CASE("killed while it creates its trace file: the file is removed") {
   f.platform.receive_thread(1);
   start_trace(f.inspection.registry(), {});
   SteppedChild traced("joins", {f.platform.name()});
-  const std::string end_of_name = "." + std::to_string(traced.pid());
+  const std::string part_of_name = "." + std::to_string(traced.pid()) + ".";
   const auto is_unfinished = [&] {
     const std::filesystem::directory_iterator all(f.platform.paths().directory);
     return std::any_of(begin(all), end(all), [&](const auto & file) {
-      return file.path().extension() == end_of_name;
+      return file.path().filename().string().find(part_of_name) != std::string::npos;
     });
   };
   while (!is_unfinished()) {

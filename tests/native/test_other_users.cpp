@@ -161,7 +161,7 @@ TEST_CASE("what another user put in the place of the user directory is refused e
   check_refused([] { platform_names(); }, directory);
   check_refused([&] { clean_platform(name); }, directory);
   check_refused([&] { PlatformPaths::of(name); }, directory);
-  check_refused([&] { JoinLock{paths}; }, directory);
+  check_refused([&] { under_join_lock(paths, [] {}); }, directory);
   CHECK(fs::is_empty(fs::exists(theirs) ? theirs : directory));
   fs::remove_all(directory);
   fs::remove_all(theirs);

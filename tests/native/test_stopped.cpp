@@ -59,6 +59,20 @@ const Role file_lock_waiter("file_lock_waiter", [](Lines & test, const Arguments
   test.say(refusal.code ? refusal.text : "locked");
 });
 
+/// A lock file in a private directory, removed at its end.
+struct LockFile {
+  LockFile() {
+    directory = mkdtemp(directory.data());
+    path = directory + "/lock";
+  }
+  ~LockFile() {
+    unlink(path.c_str());
+    rmdir(directory.c_str());
+  }
+  std::string directory = "/dev/shm/manycore-lock-of-test-XXXXXX";
+  std::string path;
+};
+
 /// Leaves a platform when it is told to.
 const Role leaver("leaver", [](Lines & test, const Arguments & arguments) {
   Placement placement;
@@ -261,7 +275,8 @@ TEST_CASE("a process that leaves where the registry lock stays taken keeps no ot
 }
 
 TEST_CASE("time in which a process is stopped does not count as waiting for a lock file") {
-  const std::string path = "/dev/shm/manycore-lock-of-test-" + std::to_string(getpid());
+  const LockFile file;
+  const std::string & path = file.path;
   std::optional<FileLock> lock = FileLock::acquire(path, 0);
   Child waiter("file_lock_waiter", {path});
   waiter.expect("waiting");
@@ -275,11 +290,11 @@ TEST_CASE("time in which a process is stopped does not count as waiting for a lo
   });
   lock.reset();
   waiter.expect("locked");
-  unlink(path.c_str());
 }
 
 TEST_CASE("the owner of a lock file is named, and called stopped only if it is") {
-  const std::string path = "/dev/shm/manycore-lock-of-test-" + std::to_string(getpid());
+  const LockFile file;
+  const std::string & path = file.path;
   Child holder("file_lock_holder", {path});
   holder.expect("locked");
   const std::string owner = "process " + std::to_string(holder.pid()) + " (";
@@ -294,5 +309,4 @@ TEST_CASE("the owner of a lock file is named, and called stopped only if it is")
   CHECK_MESSAGE(refusal.says("is stopped; continue it"), refusal.text);
   holder.kill();
   CHECK(FileLock::acquire(path, 1));
-  unlink(path.c_str());
 }
