@@ -16,6 +16,7 @@
 #include "private_shm.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -78,6 +79,23 @@ TEST_CASE("a platform lies in the chosen directory, its children find it there, 
     CHECK(platform_names() == std::vector<std::string>{platform.name()});
   }
   CHECK(std::filesystem::is_empty(chosen.path()));
+}
+
+TEST_CASE("the chosen directory is removed while nodes run: all notice, and none waits for it") {
+  const Chosen chosen;
+  const TestPlatform platform;
+  Node other(platform, 2);
+  {
+    const auto process = platform.join();
+    const pid_t receive_threads[] = {platform.receive_thread(1), platform.receive_thread(2)};
+    std::filesystem::remove_all(chosen.path());
+    for (const pid_t pid : receive_threads) {
+      wait_until("the receive threads have ended", [&] { return !is_running(pid); });
+    }
+    wait_until("the member notices", [&] { return process->is_cut_off(); });
+  }
+  check_refused(chosen.path(), ErrorCode::invalid_argument);
+  REQUIRE(mkdir(chosen.path().c_str(), 0700) == 0);  // for the check that nothing is left
 }
 
 TEST_CASE("a trailing slash of the chosen directory is ignored") {

@@ -174,7 +174,13 @@ void under_join_lock(const PlatformPaths & paths, const std::function<void()> & 
     if (!paths.is_chosen) {
       make_private_directory(paths.user_directory);
     }
-  } while (!FileLock::run(paths.join_lock(), join_timeout_ms, act_and_tidy_up));
+    if (FileLock::run(paths.join_lock(), join_timeout_ms, act_and_tidy_up)) {
+      return;
+    }
+  } while (!paths.is_chosen);  // its last user may have removed it
+  throw Error(
+    ErrorCode::system, "MANYCORE_DIRECTORY='" + paths.user_directory +
+                         "' was removed, and its platforms with it; create it again");
 }
 
 /// SMEM of each cluster in bytes, in whole MiB, on a machine with `shared_bytes` of shared memory

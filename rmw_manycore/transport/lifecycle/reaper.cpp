@@ -53,6 +53,10 @@ void drain(const FileDescriptor & descriptor) {
 /// Removes the platform if no process uses it. True if this receive thread has nothing left to
 /// serve.
 bool end_if_unused(Registry & registry) {
+  if (access(registry.paths().user_directory.c_str(), F_OK) != 0) {
+    note_removal(registry);
+    return true;
+  }
   bool ends = false;
   under_join_lock(registry.paths(), [&] {
     if (!registry.is_current()) {
