@@ -119,12 +119,19 @@ def has_terminal(manycore: Run, node: str) -> bool:
 
 
 def test_a_trace_is_stopped_saved_or_discarded(start, manycore, follow, tmp_path) -> None:
-    start(forked_example("talker")).wait_for("Publishing")
-    idle = manycore("trace", "stop", status=1)
-    follow(idle, "manycore trace start")
+    talker = start(forked_example("talker"))
+
+    def record() -> None:
+        talker.skip_output()
+        talker.wait_for("Publishing")
+
+    record()
+    follow(manycore("trace", "stop", status=1), "manycore trace start")
+    record()
     follow(manycore("trace", "start", status=1), "manycore trace stop")
     unsaved = manycore("trace", "start", status=1)
     follow(unsaved, "manycore trace start --discard")
+    record()
     manycore("trace", "stop")
     (save,) = (one for one in QUOTED.findall(unsaved.output) if " save " in one)
     file = tmp_path / "trace.json"
