@@ -156,7 +156,7 @@ def test_lengths_are_compared_with_what_is_left_before_memory_is_asked_for(node,
 @pytest.mark.skipif(not IS_MANYCORE, reason="its message is not of ours")
 @pytest.mark.parametrize("case", TEXTS)
 def test_wide_strings_are_utf16(node, case):
-    message, cdr = broken(case)
+    message, cdr = broken(BROKEN[case])
     with pytest.raises(RMWError, match="a wide string in it is not UTF-16"):
         deserialize_message(cdr, type(message))
     assert deserialize_message(serialize_message(message), type(message)) == message
