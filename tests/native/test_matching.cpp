@@ -218,6 +218,7 @@ TEST_CASE(
   // Replaces the file atomically: a missing file would mean that the platform was removed.
   std::filesystem::create_hard_link(path, path + ".away");
   std::ofstream(path + ".no_pipe") << "no pipe";
+  std::filesystem::permissions(path + ".no_pipe", std::filesystem::perms(0600));
   std::filesystem::rename(path + ".no_pipe", path);
   for (int i = 0; i < 2; ++i) {
     const Refusal refusal = refusal_of([&] { publish(*publisher, 1); });
