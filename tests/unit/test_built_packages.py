@@ -122,10 +122,12 @@ def test_a_package_whose_parts_have_changed_is_refused(python: Prefix, built: Bu
     check = "import rmw_manycore_interfaces as i; i.check('foo_msgs')"
     manifest = built.prefix / "share/foo_msgs/manifest.json"
     manifest.parent.mkdir(parents=True)
-    manifest.write_text(json.dumps({"dependencies": {"bar_msgs/msg/Bar": "RIHS01_a"}}))
+    manifest.write_text(
+        json.dumps({"dependencies": {"bar_msgs/msg/Bar": "RIHS01_a"}, "source": "/src"})
+    )
     describe(built.prefix, "bar_msgs/msg/Bar", "RIHS01_a")
     built.run(python, check)
     describe(python.path, "bar_msgs/msg/Bar", "RIHS01_b")  # installed, so it takes precedence
     refused = f"try: {check.split(';')[1].strip()}\nexcept ImportError as e: print(e)"
     text = built.run(python, f"import rmw_manycore_interfaces as i\n{refused}")
-    assert "hash RIHS01_a, but found RIHS01_b: run `manycore interface build`" in text
+    assert "hash RIHS01_a, but found RIHS01_b: run `manycore interface build /src`" in text

@@ -130,7 +130,7 @@ def test_wrong_options(tmp_path, options, said):
 
 
 def test_no_course(tmp_path):
-    with pytest.raises(ManycoreError, match="make one: manycore whill course"):
+    with pytest.raises(ManycoreError, match="make one: `manycore whill course"):
         read_course(tmp_path)
 
 
