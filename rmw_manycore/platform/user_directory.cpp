@@ -44,9 +44,12 @@ void check_chosen(const std::string & path) {
   if ((status.st_mode & 077) != 0) {
     char mode[8];
     std::snprintf(mode, sizeof mode, "%o", status.st_mode & 0777u);
+    // The sticky bit marks a directory that is meant for all users, as /tmp is.
+    const bool is_for_all = (status.st_mode & S_ISVTX) != 0;
     throw Error(
       ErrorCode::permission,
-      quoted(path) + "is open to other users (mode " + mode + "): chmod 700 " + path);
+      quoted(path) + "is open to other users (mode " + mode + "): " +
+        (is_for_all ? "mkdir -m 700 " + path + "/manycore, and choose that" : "chmod 700 " + path));
   }
   if (faccessat(AT_FDCWD, path.c_str(), R_OK | W_OK | X_OK, AT_EACCESS) != 0) {
     throw Error(

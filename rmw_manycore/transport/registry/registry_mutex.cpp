@@ -39,8 +39,8 @@ bool RegistryMutex::occupy(uint32_t seat, long wait_ns) {
   return true;
 }
 
-/// False after `wait_ns`. The file stays locked until the seat is vacated, and the kernel opens it to the next guest only
-/// after the last thread of a killed one has ended, as RobustMutex requires.
+/// False after `wait_ns`. The file stays locked until the seat is vacated, and the kernel opens it
+/// to the next guest only after the last thread of a killed one has ended, as RobustMutex requires.
 bool RegistryMutex::occupy_guest_seat(Taken & taken, long wait_ns) {
   const int wait_ms = static_cast<int>(wait_ns / (ns_per_s / 1000));
   try {
