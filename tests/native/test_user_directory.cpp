@@ -124,6 +124,10 @@ TEST_CASE("an unsuitable chosen directory is refused, in one line that says what
     chmod(path.c_str(), 0750);
     check_refused("(mode 750): chmod 700 " + path, ErrorCode::permission);
   }
+  SUBCASE("for all users, as /tmp is") {
+    chmod(path.c_str(), 01777);
+    check_refused("(mode 777): mkdir -m 700 " + path, ErrorCode::permission);
+  }
   SUBCASE("another user's") {
     if (geteuid() == 0) {
       CHECK(chown(path.c_str(), 12345, 12345) == 0);
