@@ -8,6 +8,7 @@ from rmw_manycore_py.bench.scale import (
     clients,
     clock,
     composed,
+    crowd,
     endpoints,
     history,
     holds,
@@ -18,7 +19,7 @@ from rmw_manycore_py.bench.scale import (
 )
 from rmw_manycore_py.bench.summary import Result
 
-PARTS = (threads, composed, endpoints, sources, history, holds, clock, sim_time, clients, nodes)
+PARTS = (threads, composed, endpoints, sources, history, holds, clock, sim_time, clients, crowd, nodes)
 
 
 def measure(run: Run) -> list[Result]:
