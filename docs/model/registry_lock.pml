@@ -9,29 +9,32 @@
  * ends, the kernel clears each of its listed and pending mutexes that holds its number.
  *
  * Seat 0 is that of process 0, whose threads have the numbers 1 and 2, and after it was reaped that
- * of process 2, whose thread has the number 2. Process 1, number 1, has seat 1, and reaps. Process 0
- * is killed at any step: its threads stop, the one that holds its line too, and end later, in any
- * order. With GUEST=1 seat 0 is the guest seat: it has no line, and processes 0 and 2, number 1 each,
- * occupy it under a lock of the file, which the kernel releases when a process has ended. A waiting
- * thread looks by itself, so no wake-up is modelled. Memory is sequentially consistent: each store
- * that another thread relies on is a locked instruction.
+ * of process 2, whose threads have the numbers 2 and, with TWO=1, 3. Process 1, number 1, has seat 1,
+ * and reaps. Process 0 is killed at any step: its threads stop, the one that holds its line too, and
+ * end later, in any order. With GUEST=1 seat 0 is the guest seat: it has no line, and processes 0 and
+ * 2, number 1 each, occupy it under a lock of the file, which the kernel releases when a process has
+ * ended. A waiting thread re-checks the owner, so no wake-up is modelled. Memory is sequentially
+ * consistent: each store on which another thread relies is a locked instruction.
  *
- * RUN GUEST=0
- * RUN GUEST=1
+ * RUN GUEST=0 TWO=0
+ * RUN GUEST=1 TWO=0
+ * RUN GUEST=0 TWO=1 (long)
  * BUG 1: all take the lock from one seat, so the seat is the lock, as a plain robust mutex is
  * BUG 2: a lock whose owner has ended is taken over by a store
- * BUG 3 GUEST=1: a ticket names the seat alone
+ * BUG 3 GUEST=1 TWO=0: a ticket names the seat alone
  * BUG 4: an owner is judged by its line alone
  * BUG 5: an owner is judged by its seat alone
- * BUG 6 GUEST=1: a ticket of a predecessor in the own seat is waited for
- * BUG 7 GUEST=1: the guest seat is occupied without the lock of the file
- * BUG 8 GUEST=1: the lock of the file is given back before the seat
+ * BUG 6 GUEST=1 TWO=0: a ticket of a predecessor in the own seat is waited for
+ * BUG 7 GUEST=1 TWO=0: the guest seat is occupied without the lock of the file
+ * BUG 8 GUEST=1 TWO=0: the lock of the file is given back before the seat
+ * BUG 9 GUEST=0 TWO=1: threads of a process wait for each other in the seat, not before it
  */
-#define THREADS 4
+#define THREADS 5
 #define FIRST 0    /* process 0, number 1 */
 #define SECOND 1   /* process 0, number 2 */
 #define OTHER 2    /* process 1, number 1 */
-#define NEXT 3     /* process 2, number 2 */
+#define NEXT 3     /* process 2, number 2, or 1 */
+#define LAST 4     /* process 2, number 3 */
 
 byte mark[2];              /* LockSeat::occupied: the number of the thread in it */
 bool line[2];              /* held */
@@ -43,6 +46,7 @@ bool is_killed;            /* process 0 */
 byte owners;
 bool broken;               /* an owner has died since the last repair */
 bool is_freed;             /* slot 0 */
+bool threads[2];           /* RegistryMutex::threads_ of process 0 and 2 */
 byte guest;                /* thread + 1 that holds the lock of the file */
 
 #define seat_of(ticket) ((ticket - 1) % 2)
@@ -89,6 +93,22 @@ inline vacate(t, s) {
 }
 
 #define IS_GUEST (GUEST && seat == 0)
+#define own_threads threads[(t >= NEXT -> 1 : 0)]
+
+/* Killed in between, a process needs its mutex no more. */
+inline lock_threads(t) {
+  if
+  :: t != OTHER && BUG != 9 -> atomic { !own_threads -> own_threads = true }
+  :: else
+  fi
+}
+
+inline unlock_threads(t) {
+  if
+  :: t != OTHER -> own_threads = false
+  :: else
+  fi
+}
 
 inline lock_file(t) {
 #if BUG != 7
@@ -195,6 +215,7 @@ proctype Thread(byte t, seat, number, rounds) {
     do
     :: rounds > 0 ->
        rounds--;
+       lock_threads(t);
        lock_file(t);
        occupy(t, s, number);
        take_lock(s);
@@ -205,7 +226,8 @@ proctype Thread(byte t, seat, number, rounds) {
        unlock_file(t);
 #endif
        vacate(t, s);
-       unlock_file(t)
+       unlock_file(t);
+       unlock_threads(t)
     :: else -> break
     od
   } unless { is_killed && t <= SECOND -> end_thread(t, number) }
@@ -226,7 +248,11 @@ end:
   :: is_freed -> line[0] = true
   :: GUEST
   fi;
-  run Thread(NEXT, 0, (GUEST -> 1 : 2), 1)
+  run Thread(NEXT, 0, (GUEST -> 1 : 2), 1);
+  if
+  :: TWO -> run Thread(LAST, 0, 3, 1)
+  :: !TWO
+  fi
 }
 
 init {

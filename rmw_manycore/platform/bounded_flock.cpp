@@ -36,29 +36,30 @@ public:
       throw_errno("cannot start a thread to wait for a lock");
     }
   }
-  /// Gives up if the thread is still waiting.
-  ~FlockThread() {
-    pthread_cancel(thread_);
-    pthread_join(thread_, nullptr);
-  }
   FlockThread(const FlockThread &) = delete;
   FlockThread & operator=(const FlockThread &) = delete;
 
   /// True once flock() has returned.
   bool wait_for_lock(std::chrono::milliseconds timeout) {
     std::unique_lock<std::mutex> guard(mutex_);
-    return changed_.wait_for(guard, timeout, [this] { return error_ != waiting; });
+    return returned_.wait_for(guard, timeout, [this] { return error_ != waiting; });
   }
-  /// Returns the error of flock(), once the thread has acted if there was none.
-  int wait_for_end() {
-    std::unique_lock<std::mutex> guard(mutex_);
-    changed_.wait(guard, [this] { return has_ended_; });
+  /// Gives up if the thread is still waiting; otherwise lets it act. Returns the error of flock(),
+  /// or `waiting`. Must be called once.
+  int finish() {
+    pthread_cancel(thread_);
+    pthread_join(thread_, nullptr);
+    if (error_ == waiting) {
+      flock(fd_, LOCK_UN);  // the thread may have had the lock already
+    }
     return error_;
   }
 
+  static constexpr int waiting = -1;
+
 private:
   /// flock() is no cancellation point, so the thread is cancelled asynchronously, in the system
-  /// call only: nothing is to be unwound there.
+  /// call only. Nothing is unwound here: this function has no object, and calls none that throws.
   static void * run(void * object) {
     auto & self = *static_cast<FlockThread *>(object);
     int error = 0;
@@ -68,30 +69,27 @@ private:
       pthread_setcanceltype(PTHREAD_CANCEL_DEFERRED, nullptr);
     } while (error == EINTR);
     pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, nullptr);
-    self.note([&] { self.error_ = error; });
-    if (error == 0) {
-      self.act_();
-    }
-    self.note([&] { self.has_ended_ = true; });
+    self.act_after(error);
     return nullptr;
   }
 
-  template<typename Change>
-  void note(Change change) {
-    const std::lock_guard<std::mutex> guard(mutex_);
-    change();
-    changed_.notify_one();
+  [[gnu::noinline]] void act_after(int error) noexcept {
+    {
+      const std::lock_guard<std::mutex> guard(mutex_);
+      error_ = error;
+      returned_.notify_one();
+    }
+    if (error == 0) {
+      act_();
+    }
   }
-
-  static constexpr int waiting = -1;
 
   const int fd_;
   const std::function<void()> & act_;
   pthread_t thread_{};
   std::mutex mutex_;
-  std::condition_variable changed_;
+  std::condition_variable returned_;
   int error_ = waiting;  ///< of flock()
-  bool has_ended_ = false;
 };
 
 /// False if another process holds the lock.
@@ -119,16 +117,14 @@ bool flock_within(int fd, int timeout_ms, const std::function<void()> & act) {
   }
   FlockThread thread(fd, act);
   const std::chrono::milliseconds timeout(timeout_ms / counted_timeouts + 1);
-  for (int i = 0; i < counted_timeouts; ++i) {
-    if (thread.wait_for_lock(timeout)) {
-      errno = thread.wait_for_end();
-      if (errno != 0) {
-        throw_errno("cannot lock a file");
-      }
-      return true;
-    }
+  for (int i = 0; i < counted_timeouts && !thread.wait_for_lock(timeout); ++i) {
   }
-  return false;
+  const int error = thread.finish();
+  if (error > 0) {
+    errno = error;
+    throw_errno("cannot lock a file");
+  }
+  return error != FlockThread::waiting;
 }
 
 }  // namespace manycore

@@ -44,7 +44,7 @@ void LifeThread::hold(FutexWord & word) noexcept {
   std::atomic_thread_fence(std::memory_order_release);
   head_.list.next = &entry_;
   std::atomic_thread_fence(std::memory_order_seq_cst);
-  word.store(number_, std::memory_order_release);
+  word.store(number_);
 }
 
 }  // namespace manycore

@@ -85,9 +85,10 @@ Lifelines Lifelines::open(const std::string & path) {
   static_assert(sizeof(Header) == sizeof(Lifeline));
   Lifelines lifelines(path, SharedMemory::open(path, sizeof(Header)));
   const Header & header = lifelines.memory_->at<Header>(0);
+  lifelines.count_ = header.count;
   if (
     header.magic.load(std::memory_order_acquire) != lifelines_magic ||
-    header.count > lifelines.memory_->size() / sizeof(Lifeline) - 1) {
+    lifelines.count_ > lifelines.memory_->size() / sizeof(Lifeline) - 1) {
     throw Error(
       ErrorCode::corrupt, path +
                             " is damaged, or of another version of rmw_manycore; stop the "
@@ -159,8 +160,6 @@ ProcessIdentity Lifelines::holder(uint32_t line) const {
   const Lifeline & lifeline = at(line);
   return {lifeline.pid.load(), lifeline.start_time.load(), lifeline.pid_namespace.load()};
 }
-
-uint32_t Lifelines::count() const noexcept { return memory_->at<Header>(0).count; }
 
 Lifeline & Lifelines::at(uint32_t line) const {
   if (line >= count()) {

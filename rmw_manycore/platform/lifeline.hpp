@@ -66,6 +66,7 @@ public:
   bool is_locked(uint32_t line) const;
   /// Takes abandoned lines into account.
   bool is_any_held() const;
+  uint32_t count() const noexcept { return count_; }
   /// Releases a line whose holder does not exist any more, though the kernel has not released it:
   /// kernels before 5.18 may fail to for a process that is killed as memory runs out. Without
   /// effect for a holder of another PID namespace.
@@ -79,10 +80,10 @@ private:
   struct Header;
   Lifelines(const std::string & path, SharedMemory memory);
   Lifeline & at(uint32_t line) const;
-  uint32_t count() const noexcept;
 
   std::string path_;
   std::shared_ptr<SharedMemory> memory_;
+  uint32_t count_ = 0;  ///< as read when the file was opened: memory may be damaged afterwards
 };
 
 }  // namespace manycore

@@ -71,8 +71,7 @@ std::optional<pid_t> flock_owner_of(const std::string & file) {
 std::string describe_lock_owner(const LockOwner & owner) {
   if (owner.thread == 0) {
     return "its owner has just released it; try again; if that does not help, it is damaged: stop "
-           "the "
-           "platform's nodes and run 'manycore clean'";
+           "the platform's nodes and run 'manycore clean'";
   }
   const std::string thread = std::to_string(owner.thread);
   if (owner.pid_namespace != own_pid_namespace()) {

@@ -39,8 +39,7 @@ private:
   std::string path_;
 };
 
-/// Opens a file by its path, as PrivateDirectory::open_file() does: the one way to open what a
-/// platform holds.
+/// Opens a file by its path, as PrivateDirectory::open_file() does.
 FileDescriptor open_private_file(const std::string & path, int flags, mode_t mode = 0);
 
 /// Throws Error{permission} unless the open file `fd` belongs to this user.

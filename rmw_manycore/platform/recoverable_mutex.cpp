@@ -38,14 +38,15 @@ FutexWord & lower_half_of(std::atomic<uint64_t> & ticket) {
 
 }  // namespace
 
-/// Acquire: what the last owner changed is seen. A failure leaves the ticket found in `seen`.
+/// Acquire: what the last owner changed is seen. Release: a thread that sees the ticket also sees
+/// that its seat is occupied. A failure leaves the ticket found in `seen`.
 bool RecoverableMutex::try_take(uint64_t & seen, uint64_t ticket) noexcept {
-  return ticket_.compare_exchange_strong(seen, ticket, std::memory_order_acquire);
+  return ticket_.compare_exchange_strong(seen, ticket, std::memory_order_acq_rel);
 }
 
 bool RecoverableMutex::announce_waiter(uint64_t & seen) noexcept {
   if ((seen & waiters) == 0) {
-    if (!ticket_.compare_exchange_strong(seen, seen | waiters, std::memory_order_relaxed)) {
+    if (!ticket_.compare_exchange_strong(seen, seen | waiters, std::memory_order_acquire)) {
       return false;
     }
     seen |= waiters;
@@ -58,7 +59,7 @@ void RecoverableMutex::sleep(uint64_t seen, int64_t until_ns) noexcept {
 }
 
 RecoverableMutex::Outcome RecoverableMutex::lock(
-  uint32_t seat, LockSeat & own, const SeatedOwners & owners, long timeout_ns) noexcept {
+  uint32_t seat, LockSeat & own, const SeatedOwners & owners, long timeout_ns) {
   const uint64_t ticket = make_ticket(seat, ++own.takes);
   uint64_t seen = 0;
   if (try_take(seen, ticket)) {
@@ -78,15 +79,17 @@ RecoverableMutex::Outcome RecoverableMutex::lock(
       }
       continue;
     }
+    // Announced also by a thread that leaves: a wake-up may have reached it instead of another one.
+    if (timeout_ns > 0 && !announce_waiter(seen)) {
+      continue;
+    }
     if (now_ns >= deadline_ns) {
       return Outcome::timed_out;
     }
-    if (announce_waiter(seen)) {
-      sleep(seen, std::min(deadline_ns, now_ns + look_ns));
-      look_ns = std::min(2 * look_ns, last_look_ns);
-      seen = ticket_.load(std::memory_order_relaxed);
-      now_ns = monotonic_ns();
-    }
+    sleep(seen, std::min(deadline_ns, now_ns + look_ns));
+    look_ns = std::min(2 * look_ns, last_look_ns);
+    seen = ticket_.load(std::memory_order_acquire);
+    now_ns = monotonic_ns();
   }
 }
 

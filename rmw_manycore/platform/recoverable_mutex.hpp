@@ -28,16 +28,16 @@ public:
   virtual bool has_ended(uint32_t seat) const = 0;
 };
 
-/// A mutex in shared memory whose word names the seat of its owner, and the how manieth take of
-/// that seat it is; so no ticket occurs twice. A thread that finds the owner ended takes the mutex
-/// over and learns of it. Works across PID namespaces. Model: docs/model/registry_lock.pml.
+/// A mutex in shared memory whose word, the ticket, names the seat of its owner and counts the
+/// takes from that seat, so no ticket occurs twice. A thread that finds the owner ended takes the
+/// mutex over and learns of it. Works across PID namespaces. Model: docs/model/registry_lock.pml.
 class RecoverableMutex {
 public:
   enum class Outcome { locked, owner_died, timed_out };
 
-  /// Waits at most `timeout_ns`. The calling thread occupies the seat, until after unlock().
-  Outcome lock(
-    uint32_t seat, LockSeat & own, const SeatedOwners & owners, long timeout_ns) noexcept;
+  /// Waits at most `timeout_ns`. The calling thread occupies the seat, until after unlock(). Passes
+  /// on what has_ended() throws.
+  Outcome lock(uint32_t seat, LockSeat & own, const SeatedOwners & owners, long timeout_ns);
   void unlock(uint32_t seat) noexcept;
   /// The owner's seat; empty if the mutex is free. Thread-safe.
   std::optional<uint32_t> owner() const noexcept;

@@ -9,8 +9,7 @@ namespace manycore {
 /// A mutex in shared memory that the kernel marks when the thread that owns it ends. The kernel
 /// names that thread by its number in its own PID namespace: a thread that is killed while it waits
 /// takes the mutex from an owner of the same number in another namespace. So only threads of one
-/// process may wait for it; a process that succeeds another one must not wait for, but try it,
-/// while no third one can (docs/design/registry_lock.md).
+/// process at a time may try to lock it (docs/design/registry_lock.md).
 class RobustMutex {
 public:
   enum class Outcome { locked, owner_died, timed_out };

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <climits>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -58,6 +59,13 @@ void check_chosen(const std::string & path) {
   }
 }
 
+/// The user may choose a link: the directory itself is checked and opened. Unchanged if there is
+/// none.
+std::string resolved(const char * path) {
+  char real[PATH_MAX];
+  return path[0] == '/' && realpath(path, real) != nullptr ? real : path;
+}
+
 void require_feature(bool there, const char * what, const std::string & directory) {
   if (!there) {
     throw Error(
@@ -85,11 +93,8 @@ UserDirectory UserDirectory::from_environment() {
     PrivateDirectory::open(path);  // refuses what another user put there
     return {path, false};
   }
-  std::string path = chosen;
+  const std::string path = resolved(chosen);
   check_chosen(path);
-  while (path.size() > 1 && path.back() == '/') {
-    path.pop_back();
-  }
   return {path, true};
 }
 

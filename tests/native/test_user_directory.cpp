@@ -104,6 +104,19 @@ TEST_CASE("a trailing slash of the chosen directory is ignored") {
   CHECK(PlatformPaths::of("a").registry() == chosen.path() + "/a/registry");
 }
 
+TEST_CASE("the chosen directory may be a link, which is resolved once") {
+  const Chosen chosen;
+  const std::string link = chosen.path() + "-link";
+  std::filesystem::create_directory_symlink(chosen.path(), link);
+  setenv(variable, link.c_str(), 1);
+  {
+    const TestPlatform platform;
+    const auto process = platform.join();
+    CHECK(platform.paths().registry().rfind(chosen.path() + "/", 0) == 0);
+  }
+  std::filesystem::remove(link);
+}
+
 TEST_CASE("an unsuitable chosen directory is refused, in one line that says what to do") {
   const Chosen chosen;
   const std::string path = chosen.path();

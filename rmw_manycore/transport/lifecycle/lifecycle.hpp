@@ -12,11 +12,11 @@
 
 namespace manycore {
 
-/// Calls `act` under the join lock, which serialises joining and leaving of all platforms of this
-/// user; on another thread if the lock has to be waited for (see FileLock::run()). The first owner
-/// creates the user directory; the last one that leaves no platform in it removes the directory,
-/// unless it is MANYCORE_DIRECTORY. Passes on what `act` throws. Throws Error{permission} if the
-/// user directory is not private, and Error{timeout}.
+/// Calls `act` under the join lock, which serialises joining, creating and removing of all
+/// platforms of this user; on another thread if the lock has to be waited for (see
+/// FileLock::run()). The first owner creates the user directory; the last one that leaves no
+/// platform in it removes the directory, unless it is MANYCORE_DIRECTORY. Passes on what `act`
+/// throws. Throws Error{permission} if the user directory is not private, and Error{timeout}.
 void under_join_lock(const PlatformPaths & paths, const std::function<void()> & act);
 
 uint64_t host_smem_bytes(uint64_t shared_bytes, uint32_t clusters);

@@ -46,6 +46,17 @@ void require_fixed_size(const TopicConfiguration & topic) {
   }
 }
 
+/// Each line of the platform is there, so looking at one never fails.
+Lifelines open_lifelines(const PlatformPaths & paths) {
+  Lifelines lifelines = Lifelines::open(paths.alive());
+  if (lifelines.count() < lifeline_count) {
+    throw Error(
+      ErrorCode::corrupt,
+      paths.alive() + " is damaged; stop the platform's nodes and run 'manycore clean'");
+  }
+  return lifelines;
+}
+
 bool is_gone(const std::string & path) {
   return access(path.c_str(), F_OK) != 0 && (errno == ENOENT || errno == ENOTDIR);
 }
@@ -112,7 +123,7 @@ void Registry::create(
 Registry::Registry(const PlatformPaths & paths)
 : paths_(paths),
   memory_(open_registry(paths)),
-  lifelines_(Lifelines::open(paths.alive())),
+  lifelines_(open_lifelines(paths)),
   processes_(memory_, header().processes, process_table_offset, process_capacity),
   nodes_(memory_, header().nodes, node_table_offset, node_capacity),
   endpoints_(memory_, header().endpoints, endpoint_table_offset, endpoint_capacity),

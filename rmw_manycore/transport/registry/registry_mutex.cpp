@@ -12,7 +12,15 @@ namespace {
 
 constexpr int64_t others_first_ns = 100'000;
 
+long left_until(int64_t deadline_ns) { return std::max<long>(deadline_ns - monotonic_ns(), 0); }
+
 }  // namespace
+
+RegistryMutex::RegistryMutex(
+  RegistryHeader & header, const Lifelines & lifelines, const std::string & file)
+: header_(header), lifelines_(lifelines), file_(file) {
+  threads_.initialize();
+}
 
 /// The thread has ended when the kernel has marked what it occupied. The line tells more: while it
 /// is held, its seat's owner lives, though another mark may mislead the kernel (see RobustMutex).
@@ -25,10 +33,11 @@ bool RegistryMutex::has_ended(uint32_t seat) const {
   return !is_line_held && !header_.seats[seat].occupied.is_locked();
 }
 
-/// False after `wait_ns`.
-bool RegistryMutex::occupy(uint32_t seat, long wait_ns) {
+/// Occupies the seat, or returns false at the deadline. The mark of a predecessor is gone: it is
+/// dead, or this thread is a guest.
+bool RegistryMutex::occupy(uint32_t seat, int64_t deadline_ns) {
   LockSeat & own = header_.seats[seat];
-  const RobustMutex::Outcome outcome = own.occupied.lock(wait_ns);
+  const RobustMutex::Outcome outcome = own.occupied.lock(left_until(deadline_ns));
   if (outcome == RobustMutex::Outcome::timed_out) {
     return false;
   }
@@ -39,35 +48,61 @@ bool RegistryMutex::occupy(uint32_t seat, long wait_ns) {
   return true;
 }
 
-/// False after `wait_ns`. The file stays locked until the seat is vacated, and the kernel opens it
-/// to the next guest only after the last thread of a killed one has ended, as RobustMutex requires.
-bool RegistryMutex::occupy_guest_seat(Taken & taken, long wait_ns) {
-  const int wait_ms = static_cast<int>(wait_ns / (ns_per_s / 1000));
+/// The file stays locked until the seat is vacated, and the kernel opens it to the next guest only
+/// after the last thread of a killed one has ended, as RobustMutex requires. A mark that is found
+/// then is one that the kernel failed to clear. False at the deadline if the registry is locked;
+/// throws Error{timeout} if only a guest keeps this one from trying.
+bool RegistryMutex::lock_guest_file(Taken & taken, int64_t deadline_ns) {
   try {
-    taken.other_guests = FileLock::acquire_existing(file_, wait_ms);
+    const int wait_ms = static_cast<int>(left_until(deadline_ns) / (ns_per_s / 1000));
+    taken.guest_file = FileLock::acquire_existing(file_, wait_ms);
   } catch (const Error & error) {
-    if (error.code() == ErrorCode::timeout) {
+    if (error.code() == ErrorCode::timeout && header_.mutex.owner()) {
       return false;
     }
     throw;
   }
-  if (!taken.other_guests) {
+  if (!taken.guest_file) {
     throw Error(ErrorCode::system, file_ + " was removed; try again");
   }
-  return occupy(guest_seat, wait_ns);
+  RobustMutex & occupied = header_.seats[guest_seat].occupied;
+  occupied.mark_owner_died(occupied.owner());
+  return true;
 }
 
 std::optional<RegistryMutex::Taken> RegistryMutex::try_take(long wait_ns) {
   const int64_t deadline_ns = monotonic_ns() + wait_ns;
-  const bool is_guest = line_ == nothing;
-  Taken taken{is_guest ? guest_seat : line_, false, {}};
-  if (!(is_guest ? occupy_guest_seat(taken, wait_ns) : occupy(line_, wait_ns))) {
+  const RobustMutex::Outcome outcome = threads_.lock(wait_ns);
+  if (outcome == RobustMutex::Outcome::timed_out) {
     return std::nullopt;
   }
-  LockSeat & own = header_.seats[taken.seat];
+  if (outcome == RobustMutex::Outcome::owner_died) {
+    threads_.mark_consistent();
+  }
   try {
-    const long left_ns = std::max<long>(deadline_ns - monotonic_ns(), 0);
-    const auto outcome = header_.mutex.lock(taken.seat, own, *this, left_ns);
+    if (
+      std::optional<Taken> taken = take_from(line_ == nothing ? guest_seat : line_, deadline_ns)) {
+      return taken;
+    }
+  } catch (...) {
+    threads_.unlock();
+    throw;
+  }
+  threads_.unlock();
+  return std::nullopt;
+}
+
+std::optional<RegistryMutex::Taken> RegistryMutex::take_from(uint32_t seat, int64_t deadline_ns) {
+  Taken taken{seat, false, {}};
+  if (seat == guest_seat && !lock_guest_file(taken, deadline_ns)) {
+    return std::nullopt;
+  }
+  if (!occupy(seat, deadline_ns)) {
+    return std::nullopt;
+  }
+  LockSeat & own = header_.seats[seat];
+  try {
+    const auto outcome = header_.mutex.lock(seat, own, *this, left_until(deadline_ns));
     if (outcome != RecoverableMutex::Outcome::timed_out) {
       taken.owner_died = outcome == RecoverableMutex::Outcome::owner_died;
       return taken;
@@ -121,7 +156,8 @@ void RegistryMutex::give_back(Taken & taken) noexcept {
   }
   header_.mutex.unlock(taken.seat);
   header_.seats[taken.seat].occupied.unlock();
-  taken.other_guests.reset();
+  taken.guest_file.reset();
+  threads_.unlock();
 }
 
 /// A woken thread needs about 50 us to run. Without this wait, a thread that creates many endpoints
@@ -135,7 +171,8 @@ void RegistryMutex::let_others_go_first() const noexcept {
 }
 
 bool RegistryMutex::is_waited_for(uint32_t seat) const noexcept {
-  return header_.mutex.is_waited_for() || header_.seats[seat].occupied.is_waited_for();
+  return header_.mutex.is_waited_for() || threads_.is_waited_for() ||
+         header_.seats[seat].occupied.is_waited_for();
 }
 
 long RegistryMutex::parting_wait_ns() const noexcept {

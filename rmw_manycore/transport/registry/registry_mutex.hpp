@@ -24,11 +24,10 @@ public:
   struct Taken {
     uint32_t seat;
     bool owner_died;
-    std::optional<FileLock> other_guests;  ///< kept out
+    std::optional<FileLock> guest_file;  ///< keeps other guests out
   };
 
-  RegistryMutex(RegistryHeader & header, const Lifelines & lifelines, const std::string & file)
-  : header_(header), lifelines_(lifelines), file_(file) {}
+  RegistryMutex(RegistryHeader & header, const Lifelines & lifelines, const std::string & file);
 
   /// From now on takes the lock from the seat of a line that this process holds, until it has left
   /// the platform. Called before other threads use this object.
@@ -51,9 +50,10 @@ public:
 
 private:
   bool has_ended(uint32_t seat) const override;
-  bool occupy(uint32_t seat, long wait_ns);
-  bool occupy_guest_seat(Taken & taken, long wait_ns);
+  bool lock_guest_file(Taken & taken, int64_t deadline_ns);
+  bool occupy(uint32_t seat, int64_t deadline_ns);
   std::optional<Taken> try_take(long wait_ns);
+  std::optional<Taken> take_from(uint32_t seat, int64_t deadline_ns);
   [[noreturn]] void refuse(long wait_ns) const;
   void let_others_go_first() const noexcept;
 
@@ -62,6 +62,9 @@ private:
   const std::string file_;
   const uint64_t pid_namespace_ = own_pid_namespace();
   uint32_t line_ = nothing;
+  /// Of this process's threads, in its own memory: so one of them at a time locks the mutex of the
+  /// seat, and none is killed while it waits for that.
+  RobustMutex threads_;
   std::atomic<bool> stayed_locked_{false};
   std::atomic<int64_t> others_first_until_ns_{0};  ///< CLOCK_MONOTONIC
 };

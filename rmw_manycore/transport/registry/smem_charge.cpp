@@ -21,8 +21,9 @@ uint32_t process_of(Registry & registry, const ProcessIdentity & identity) {
 // If this process dies between the two updates, the next owner of the lock sums up the entries
 // anew.
 void charge_smem(Registry & registry, const ProcessIdentity & identity, uint64_t size_bytes) {
-  ProcessEntry & entry = registry.processes()[process_of(registry, identity)];
+  process_of(registry, identity);  // before the lock: a guest can lock only a platform that exists
   const Registry::Lock lock(registry);
+  ProcessEntry & entry = registry.processes()[process_of(registry, identity)];
   registry.clusters().at(entry.cluster).charge(entry.charged_bytes, size_bytes);
   entry.charged_bytes = size_bytes;
 }
