@@ -3,7 +3,7 @@
  * Question: is each message reported to its callback, though a publisher of the same context spares
  * the thread that calls callbacks, and never waits, and the thread looks only at what is marked?
  * Does a thread that holds a lock of the user destroy an entity, while another one's callback waits
- * for that lock, and does no callback run that was cleared?
+ * for that lock, and does no callback run that was cleared, nor two at the same time?
  *
  * Follows Outbox::publish, WakeWords::mark_arrival, CallbackMarks, CallbackThread::spared, ::report,
  * ::run and ::remove, and Callback::set, with publishers, the thread, and one that sets the callback
@@ -31,6 +31,7 @@
  * BUG 11 PUBLISHERS=1 MESSAGES=1 OTHER=1: no look after a publisher met a callback being set
  * BUG 12 PUBLISHERS=1 MESSAGES=1 OTHER=1: a thread that clears a callback waits for its turn
  * BUG 13 PUBLISHERS=1 MESSAGES=1 OTHER=1: a callback cleared without its mutex
+ * BUG 14 PUBLISHERS=1 MESSAGES=1 OTHER=1: earlier messages reported without the turn
  */
 
 bool turn;               /* CallbackThread::turn_ */
@@ -46,6 +47,7 @@ byte epoch;
 byte arrived, reported;
 byte by_callback = 1;    /* messages that the callback will publish */
 byte finished;
+byte running;            /* callbacks */
 
 bool users;              /* a lock of the user */
 bool other_locked, other_is_set, in_other;  /* the other entity's callback */
@@ -76,6 +78,7 @@ inline look() {
   if
   :: n > reported ->
     reported = n;
+    d_step { running++; assert(running == 1) };
     take_lock_of_user();
     if
     :: atomic { by_callback > 0 -> by_callback--; arrived++ };
@@ -83,7 +86,8 @@ inline look() {
       leave()
 #endif
     :: true
-    fi
+    fi;
+    running--
   :: else
   fi;
   n = 0
@@ -152,18 +156,32 @@ inline add() {
 }
 
 inline set() {
+#if BUG == 14
+  has_turn = false;
+#else
+  atomic { has_turn = !turn; turn = true };
+#endif
   lock(locked);
   if
   :: !is_listed -> add()
   :: is_listed
   fi;
   is_set = true;
+#if BUG == 14
   look();
-  locked = false
+#else
+  if
+  :: has_turn -> look()
+  :: else -> d_step { changed = true }; raise_epoch()
+  fi;
+#endif
+  locked = false;
+  turn = turn && !has_turn
 }
 
 proctype setter() {
   byte n;
+  bool has_turn;
   set();
 #if OTHER
   set();                 /* replaces the callback */
@@ -211,7 +229,9 @@ inline look_at_marked() {
 #if OTHER
   lock(other_locked);
   if
-  :: other_is_set -> in_other = true; in_other = false
+  :: other_is_set ->
+     d_step { running++; assert(running == 1); in_other = true };
+     d_step { running--; in_other = false }
   :: else
   fi;
   other_locked = false;

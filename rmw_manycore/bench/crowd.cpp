@@ -17,6 +17,8 @@
 namespace {
 
 using namespace manycore::bench;
+using manycore::futex_wait;
+using manycore::futex_wake_all;
 using manycore::FutexWord;
 using manycore::monotonic_ns;
 

@@ -179,9 +179,32 @@ def test_other_entities_come_and_go_while_a_callback_runs(node, arrivals_of):
     assert entered.wait(TIMEOUT_S)
     other = node.create_subscription(String, "other", print, DEEP)
     node.create_publisher(String, "other", DEEP).publish(String())
-    assert Arrivals(other).count == 1
-    node.destroy_subscription(other)
+    told = Arrivals(other)
+    node.destroy_subscription(node.create_subscription(String, "another", print, DEEP))
     released.set()
+    wait_until(lambda: in_time, "the callback ends")
+    assert in_time == [True]
+    wait_until(lambda: told.count == 1, "the message from before the callback was set is reported")
+    told.clear()
+
+
+def test_callbacks_that_clear_each_other_do_not_meet(node, arrivals_of):
+    """One is told of an earlier message when it is set, while the other one runs."""
+    entered, is_set, in_time = threading.Event(), threading.Event(), []
+    told: list[Arrivals] = []
+
+    def clear_the_other() -> None:
+        entered.set()
+        in_time.append(is_set.wait(TIMEOUT_S))
+        told[0].clear()
+
+    runs = arrivals_of(listen(node), then=clear_the_other)
+    other = node.create_subscription(String, "other", print, DEEP)
+    node.create_publisher(String, "other", DEEP).publish(String())
+    threading.Thread(target=speak(node).publish, args=(String(),), daemon=True).start()
+    assert entered.wait(TIMEOUT_S)
+    told.append(Arrivals(other, then=runs.clear))
+    is_set.set()
     wait_until(lambda: in_time, "the callback ends")
     assert in_time == [True]
 

@@ -16,15 +16,27 @@ void Callback::set(rmw_event_callback_t function, const void * user_data) {
     return;
   }
   const std::shared_ptr<Reporter> reporter = reporter_;  // survives this object
+  const std::unique_lock turn = thread_.try_turn();
   const std::lock_guard lock(reporter->mutex());
   thread_.add(reporter);
   reporter->set(function, user_data);
+  report(*reporter, turn.owns_lock());
 }
 
 void Callback::report_now() {
   const std::shared_ptr<Reporter> reporter = reporter_;
+  const std::unique_lock turn = thread_.try_turn();
   const std::lock_guard lock(reporter->mutex());
-  reporter->report();
+  report(*reporter, turn.owns_lock());
+}
+
+/// Functions that run at the same time could wait for each other to clear their callbacks.
+void Callback::report(Reporter & reporter, bool has_turn) {
+  if (has_turn) {
+    reporter.report();
+  } else {
+    thread_.look_at_all();
+  }
 }
 
 void Callback::clear() noexcept {

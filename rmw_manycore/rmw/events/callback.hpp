@@ -20,14 +20,16 @@ public:
   Callback & operator=(const Callback &) = delete;
 
   /// Sets, replaces or (nullptr) clears the function. Earlier arrivals that are neither reported
-  /// nor taken are reported at once, from the calling thread; the function may destroy this object.
+  /// nor taken are reported at once, from the calling thread, unless another thread is calling
+  /// functions: then by the thread that calls callbacks. The function may destroy this object.
   /// Waits until the former function does not run, unless called from it. No effect in a child of
   /// fork().
   void set(rmw_event_callback_t function, const void * user_data);
-  /// Reports new arrivals from the calling thread if a function is set.
+  /// Reports new arrivals if a function is set, likewise.
   void report_now();
 
 private:
+  void report(Reporter & reporter, bool has_turn);
   void clear() noexcept;
 
   CallbackThread & thread_;

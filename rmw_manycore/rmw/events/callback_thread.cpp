@@ -41,6 +41,12 @@ void CallbackThread::add(const std::shared_ptr<Reporter> & reporter) {
   wake_sleep();  // a sleeping thread has neither this reporter's watchers nor its due time
 }
 
+void CallbackThread::look_at_all() noexcept {
+  const std::lock_guard lock(mutex_);
+  is_any_new_ = true;
+  wake_sleep();
+}
+
 void CallbackThread::remove(Reporter & reporter) noexcept {
   const std::lock_guard running(reporter.mutex());
   reporter.clear();
@@ -102,7 +108,7 @@ void CallbackThread::report(const MessageTopic & topic) noexcept {
 }
 
 bool CallbackThread::report_all_of(const MessageTopic & topic) {
-  const std::unique_lock turn(turn_, std::try_to_lock);
+  const std::unique_lock turn = try_turn();
   if (!turn) {
     return false;
   }

@@ -20,9 +20,10 @@ namespace rmw_manycore {
 /// the first callback is set; sleeps on its own wake word, and looks at what is marked when that is
 /// raised. A thread of the context that publishes calls for its message itself. Thread-safe.
 ///
-/// A thread that looks for arrivals holds `turn_`, and one that calls a function holds the mutex of
-/// its Reporter. add() and remove() take neither `turn_` nor the mutex of another Reporter, so they
-/// wait for no other function. Lock order: `turn_`, Reporter::mutex(), `mutex_`.
+/// A thread that looks for arrivals and calls functions holds `turn_`, and the mutex of the
+/// Reporter whose function it calls. add() and remove() take neither `turn_` nor the mutex of
+/// another Reporter, so they wait for no other function. Lock order: `turn_`, Reporter::mutex(),
+/// `mutex_`.
 class CallbackThread {
 public:
   explicit CallbackThread(manycore::Waiters & waiters) noexcept : waiters_(waiters) {}
@@ -42,6 +43,10 @@ public:
 
   /// True in a child of fork(): the thread does not exist there, and mutexes may be locked forever.
   bool is_inherited() const noexcept { return side_.is_inherited(); }
+  /// The right to call functions, unless another thread has it. In a function, the thread has it.
+  std::unique_lock<std::recursive_mutex> try_turn() { return {turn_, std::try_to_lock}; }
+  /// Makes the thread look for arrivals of all callbacks.
+  void look_at_all() noexcept;
   /// Requires the mutex of the Reporter.
   void add(const std::shared_ptr<Reporter> & reporter);
   /// Clears the function, too. Waits until it does not run, unless called from it.
@@ -87,7 +92,7 @@ private:
   const manycore::ForkSide side_;
   /// Held by the one thread that looks for arrivals and calls, so that functions that destroy each
   /// other's entities do not run at the same time.
-  std::mutex turn_;
+  std::recursive_mutex turn_;
   std::mutex mutex_;  ///< guards what follows, to `stopping_`
   std::condition_variable wake_;
   Reporters events_;

@@ -27,11 +27,7 @@ void Reporter::set(rmw_event_callback_t function, const void * user_data) {
   function_ = function;
   user_data_ = user_data;
   const uint64_t arrivals = source_.arrivals().count;
-  const uint64_t pending = std::min(source_.unread(), arrivals - reported_);
-  reported_ = arrivals;
-  if (pending != 0) {
-    call(pending);
-  }
+  reported_ = arrivals - std::min(source_.unread(), arrivals - reported_);
 }
 
 int64_t Reporter::report() {

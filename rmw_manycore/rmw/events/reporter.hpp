@@ -51,7 +51,7 @@ public:
 
   // Require the mutex:
 
-  /// Reports earlier arrivals that are neither reported nor taken.
+  /// Earlier arrivals that are neither reported nor taken are to be reported next.
   void set(rmw_event_callback_t function, const void * user_data);
   void clear() noexcept { function_ = nullptr; }
   /// Returns when the passage of time may raise the count next.
