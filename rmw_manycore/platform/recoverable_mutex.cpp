@@ -59,7 +59,7 @@ void RecoverableMutex::sleep(uint64_t seen, int64_t until_ns) noexcept {
 }
 
 RecoverableMutex::Outcome RecoverableMutex::lock(
-  uint32_t seat, LockSeat & own, const SeatedOwners & owners, long timeout_ns) {
+  uint32_t seat, LockSeat & own, const HasEnded & has_ended, long timeout_ns) {
   const uint64_t ticket = make_ticket(seat, ++own.takes);
   uint64_t seen = 0;
   if (try_take(seen, ticket)) {
@@ -71,7 +71,7 @@ RecoverableMutex::Outcome RecoverableMutex::lock(
   while (true) {
     // If the ticket is still there when this thread takes the mutex, its owner has not unlocked,
     // and has ended, so it never will. A ticket of this thread's own seat is that of a predecessor.
-    const bool owner_died = seen != 0 && (seat_of(seen) == seat || owners.has_ended(seat_of(seen)));
+    const bool owner_died = seen != 0 && (seat_of(seen) == seat || has_ended(seat_of(seen)));
     if (seen == 0 || owner_died) {
       // Other threads may be asleep, so the flag stays set.
       if (try_take(seen, ticket | waiters)) {

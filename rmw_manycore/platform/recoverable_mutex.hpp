@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "platform/robust_mutex.hpp"
@@ -20,14 +21,6 @@ struct LockSeat {
 };
 static_assert(sizeof(LockSeat) == 64);
 
-/// Says whether the thread that took the mutex from a seat has ended. The mutex must not trust the
-/// seat's number, which may be damaged.
-class SeatedOwners {
-public:
-  virtual ~SeatedOwners() = default;
-  virtual bool has_ended(uint32_t seat) const = 0;
-};
-
 /// A mutex in shared memory whose word, the ticket, names the seat of its owner and counts the
 /// takes from that seat, so no ticket occurs twice. A thread that finds the owner ended takes the
 /// mutex over and learns of it. Works across PID namespaces. Model: docs/model/registry_lock.pml.
@@ -35,9 +28,13 @@ class RecoverableMutex {
 public:
   enum class Outcome { locked, owner_died, timed_out };
 
+  /// Says whether the thread that took the mutex from a seat has ended. The seat may not exist: a
+  /// damaged ticket names any.
+  using HasEnded = std::function<bool(uint32_t seat)>;
+
   /// Waits at most `timeout_ns`. The calling thread occupies the seat, until after unlock(). Passes
-  /// on what has_ended() throws.
-  Outcome lock(uint32_t seat, LockSeat & own, const SeatedOwners & owners, long timeout_ns);
+  /// on what `has_ended` throws.
+  Outcome lock(uint32_t seat, LockSeat & own, const HasEnded & has_ended, long timeout_ns);
   void unlock(uint32_t seat) noexcept;
   /// The owner's seat; empty if the mutex is free. Thread-safe.
   std::optional<uint32_t> owner() const noexcept;

@@ -102,7 +102,8 @@ std::optional<RegistryMutex::Taken> RegistryMutex::take_from(uint32_t seat, int6
   }
   LockSeat & own = header_.seats[seat];
   try {
-    const auto outcome = header_.mutex.lock(seat, own, *this, left_until(deadline_ns));
+    const auto outcome = header_.mutex.lock(
+      seat, own, [this](uint32_t other) { return has_ended(other); }, left_until(deadline_ns));
     if (outcome != RecoverableMutex::Outcome::timed_out) {
       taken.owner_died = outcome == RecoverableMutex::Outcome::owner_died;
       return taken;

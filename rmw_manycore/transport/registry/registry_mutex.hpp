@@ -14,7 +14,7 @@ namespace manycore {
 
 /// The registry lock as this process takes it: from the seat of the line that it holds, or from the
 /// guest seat. See docs/design/registry_lock.md.
-class RegistryMutex : private SeatedOwners {
+class RegistryMutex {
 public:
   static constexpr long usual_wait_ns = 5'000'000'000;
   static constexpr long short_wait_ns = 100'000'000;  ///< from inside a publish
@@ -49,7 +49,7 @@ public:
   LockOwner owner() const noexcept;
 
 private:
-  bool has_ended(uint32_t seat) const override;
+  bool has_ended(uint32_t seat) const;
   bool lock_guest_file(Taken & taken, int64_t deadline_ns);
   bool occupy(uint32_t seat, int64_t deadline_ns);
   std::optional<Taken> try_take(long wait_ns);
