@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import grp
 import os
+import pwd
 import signal
 import subprocess
 import sys
@@ -219,28 +221,110 @@ def use_of_runs() -> list[Callable[[], object]]:
 
 @pytest.mark.parametrize("use", range(4))
 @pytest.mark.parametrize("place", ["state", "state/runs/platform"])
-@pytest.mark.parametrize("how", ["open", "owner"])
+@pytest.mark.parametrize(
+    ("mode", "owner", "group", "advice"),
+    [
+        (0o777, -1, -1, "chmod 700 {}"),
+        (0o770, -1, 12345, "chmod 700 {}"),
+        (0o700, 12345, -1, "choose another MANYCORE_STATE"),
+    ],
+)
 def test_directories_of_other_users_are_refused(
-    state: Path, tmp_path: Path, use: int, place: str, how: str
+    state: Path,
+    tmp_path: Path,
+    use: int,
+    place: str,
+    mode: int,
+    owner: int,
+    group: int,
+    advice: str,
 ) -> None:
-    (tmp_path / place).mkdir(0o700, parents=True)
-    if how == "open":
-        (tmp_path / place).chmod(0o777)
-    elif os.geteuid() == 0:
-        os.chown(tmp_path / place, 12345, 12345)
-    else:
-        pytest.skip("needs root")
-    with pytest.raises(ManycoreError, match=f"{place}: expected a directory of this user"):
+    directory = tmp_path / place
+    directory.mkdir(0o700, parents=True)
+    directory.chmod(mode)
+    change_owner(directory, owner, group)
+    with pytest.raises(ManycoreError) as refused:
         use_of_runs()[use]()
+    assert f"{place}: expected a directory of this user" in str(refused.value)
+    assert str(refused.value).endswith(f"; {advice.format(directory)}")
     assert list(state.rglob("run.json")) == []
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="needs root")
-def test_no_state_is_kept_in_the_directory_of_another_user(state: Path, tmp_path: Path) -> None:
-    os.chown(tmp_path, 12345, 12345)
-    with pytest.raises(ManycoreError, match="found owner 12345"):
-        new_run("platform", {}, joins=False).__enter__()
-    assert not state.exists()
+@pytest.mark.parametrize("use", range(4))
+def test_a_directory_for_all_users_is_not_to_be_closed(state: Path, use: int) -> None:
+    state.mkdir()
+    state.chmod(0o1777)
+    with pytest.raises(ManycoreError, match=f"; mkdir -m 700 {state}/manycore, and choose that"):
+        use_of_runs()[use]()
+    assert list(state.iterdir()) == []
+
+
+@pytest.mark.parametrize("use", range(4))
+@pytest.mark.parametrize("exists", [True, False])
+@pytest.mark.parametrize(
+    ("mode", "owner", "group", "advice"),
+    [
+        (0o777, -1, -1, "chmod go-w {}"),
+        (0o770, -1, 12345, "chmod go-w {}"),
+        (0o700, 12345, -1, "choose another MANYCORE_STATE"),
+        (0o1777, 12345, -1, "choose another MANYCORE_STATE"),
+    ],
+)
+def test_the_directory_above_is_refused_if_others_can_replace_what_is_in_it(
+    state: Path,
+    tmp_path: Path,
+    use: int,
+    exists: bool,
+    mode: int,
+    owner: int,
+    group: int,
+    advice: str,
+) -> None:
+    if exists:
+        state.mkdir(0o700)
+    tmp_path.chmod(mode)
+    change_owner(tmp_path, owner, group)
+    with pytest.raises(ManycoreError) as refused:
+        use_of_runs()[use]()
+    assert f"{tmp_path}: expected a directory in which no other user can" in str(refused.value)
+    assert str(refused.value).endswith(f"; {advice.format(tmp_path)}")
+    assert list(tmp_path.iterdir()) == ([state] if exists else [])
+
+
+def test_a_directory_for_all_users_may_hold_that_of_runs(state: Path, tmp_path: Path) -> None:
+    tmp_path.chmod(0o1777)
+    with new_run("platform", {}, joins=False):
+        assert len(runs_of("platform")) == 1
+
+
+def test_the_group_of_this_user_alone_may_write(state: Path, tmp_path: Path) -> None:
+    """Such groups come with umask 002."""
+    user = pwd.getpwuid(os.geteuid())
+    group = grp.getgrgid(user.pw_gid)
+    if group.gr_name != user.pw_name or set(group.gr_mem) - {user.pw_name}:
+        pytest.skip("this user has no group of its own")
+    state.mkdir()
+    for directory in (tmp_path, state):
+        os.chown(directory, -1, group.gr_gid)
+        directory.chmod(0o775)
+    with new_run("platform", {}, joins=False):
+        assert len(runs_of("platform")) == 1
+
+
+def change_owner(directory: Path, owner: int, group: int) -> None:
+    """Give a directory to another user or group; -1 leaves them."""
+    if (owner, group) != (-1, -1) and os.geteuid() != 0:
+        pytest.skip("needs root")
+    os.chown(directory, owner, group)
+
+
+@pytest.mark.parametrize("use", range(4))
+def test_the_directory_of_all_runs_is_no_link(state: Path, tmp_path: Path, use: int) -> None:
+    (tmp_path / "elsewhere").mkdir(0o700)
+    state.symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(ManycoreError, match=rf"found a link, .*; rm {state}, or choose another"):
+        use_of_runs()[use]()
+    assert list((tmp_path / "elsewhere").iterdir()) == []
 
 
 def test_links_between_runs_are_not_followed(state: Path, tmp_path: Path) -> None:
