@@ -11,12 +11,14 @@ from rmw_manycore_py.mapfile.placing.placement import PlacedNode
 from rmw_manycore_py.mapfile.placing.show import rules_in_words
 
 # Variables that locate a ROS 2 installation; copied from the environment of `create`.
-_OF_THE_INSTALLATION = ("AMENT_PREFIX_PATH", "PYTHONPATH", "ROS_DOMAIN_ID")
+_OF_THE_INSTALLATION = ("AMENT_PREFIX_PATH", "PYTHONPATH")
 
 
 def launch_script(node: PlacedNode, parameter_files: list[PurePosixPath]) -> str:
     """Return the script; paths of parameter files are relative to its parent directory."""
     inherited = {key: os.environ[key] for key in _OF_THE_INSTALLATION if key in os.environ}
+    # The placement is that of this domain, so the script must not take another from its shell.
+    inherited["ROS_DOMAIN_ID"] = os.environ.get("ROS_DOMAIN_ID") or "0"
     lines = [
         "#!/bin/sh",
         f"# {node.full_name} on {node.place}, host CPU {node.host_cpu}.",

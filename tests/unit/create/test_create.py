@@ -109,6 +109,36 @@ def test_a_launch_script_starts_its_node_in_place(mapfile: Path, tmp_path: Path)
     assert {key: started["env"][key] for key in node.env} == node.env
 
 
+@pytest.mark.parametrize(("created", "expected"), [(None, "0"), ("", "0"), ("7", "7")])
+def test_a_launch_script_has_the_domain_that_its_node_is_placed_in(
+    mapfile: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    created: str | None,
+    expected: str,
+) -> None:
+    """Otherwise the shell decides whether a node with a domain of its own is elsewhere."""
+    monkeypatch.delenv("ROS_DOMAIN_ID", raising=False)
+    if created is not None:
+        monkeypatch.setenv("ROS_DOMAIN_ID", created)
+    mapfile.write_text(MAPFILE.replace("MOOD: quite calm", "ROS_DOMAIN_ID: 5"))
+    create(mapfile, tmp_path / "out")
+    places = {
+        name: environment_in(tmp_path / f"out/nodes/{name}.sh", ROS_DOMAIN_ID="5")
+        for name in ("talker", "listener")
+    }
+    assert places["talker"] == {"ROS_DOMAIN_ID": "5", "MANYCORE_PLATFORM": ""}
+    assert places["listener"] == {"ROS_DOMAIN_ID": expected, "MANYCORE_PLATFORM": "chip"}
+
+
+def environment_in(script: Path, **shell: str) -> dict[str, str]:
+    """Return where a node is that a script starts in a shell with these variables."""
+    env = {"PATH": os.environ["PATH"], **shell}
+    done = subprocess.run([script], env=env, check=True, capture_output=True, text=True)
+    started = json.loads(done.stdout)["env"]
+    return {name: started[name] for name in ("ROS_DOMAIN_ID", "MANYCORE_PLATFORM")}
+
+
 def test_parameters_are_written_under_the_nodes_full_name(mapfile: Path, tmp_path: Path) -> None:
     create(mapfile, tmp_path / "out")
     assert yaml.safe_load((tmp_path / "out/parameters/talker.yaml").read_text()) == {
