@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import re
 from collections.abc import Mapping
@@ -13,6 +14,8 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 MAX_DOMAIN = 232
 # Same as PlatformPaths::is_name in rmw_manycore/transport/registry/cluster.cpp.
 PLATFORM_NAME = r"^[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}$"
+_strtoul = ctypes.CDLL(None).strtoul
+_strtoul.restype = ctypes.c_ulong
 
 
 def ros_domain() -> int:
@@ -21,12 +24,13 @@ def ros_domain() -> int:
     :raises ManycoreError: if it is not a valid domain.
     """
     text = os.environ.get("ROS_DOMAIN_ID") or "0"
-    if not text.isdecimal() or int(text) > MAX_DOMAIN:
+    domain, rest = _number(text)
+    if rest or domain > MAX_DOMAIN:
         raise ManycoreError(
             f"ROS_DOMAIN_ID: expected a number from 0 to {MAX_DOMAIN}, found '{text}'",
             EXIT_BAD_INPUT,
         )
-    return int(text)
+    return domain
 
 
 def default_platform(domain: int | None = None) -> str:
@@ -40,7 +44,7 @@ def default_platform(domain: int | None = None) -> str:
     """
     own = _domain_of(os.environ)
     named = os.environ.get("MANYCORE_PLATFORM")
-    if named and (domain is None or str(domain) == own):
+    if named and domain in (None, own):
         return checked_platform(named, "MANYCORE_PLATFORM")
     return f"domain-{own if domain is None else domain}"
 
@@ -53,9 +57,19 @@ def is_elsewhere(node: Mapping[str, str], base: Mapping[str, str] = os.environ) 
     return _domain_of({**base, **node}) != _domain_of(base)
 
 
-def _domain_of(environment: Mapping[str, str]) -> str:
-    text = environment.get("ROS_DOMAIN_ID") or "0"
-    return str(int(text)) if text.isdecimal() else text
+def _domain_of(environment: Mapping[str, str]) -> int:
+    return _number(environment.get("ROS_DOMAIN_ID", ""))[0]
+
+
+def _number(text: str) -> tuple[int, bytes]:
+    """Return the number at the start of a text as rcl and the transport read it, and the rest.
+
+    They use strtoul of any base: 010 is 8, and 0x5 is 5.
+    """
+    rest = ctypes.c_char_p()
+    encoded = ctypes.create_string_buffer(os.fsencode(text))
+    number: int = _strtoul(encoded, ctypes.byref(rest), 0)
+    return number, rest.value or b""
 
 
 def checked_platform(name: str, place: str) -> str:

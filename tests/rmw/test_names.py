@@ -13,7 +13,9 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import String
-from support import IS_MANYCORE
+from support import IS_MANYCORE, PLATFORMS
+
+from rmw_manycore_py.ros.domain import default_platform
 
 needs_manycore = pytest.mark.skipif(not IS_MANYCORE, reason="about what only DDS has")
 
@@ -125,6 +127,23 @@ def test_a_context_of_another_domain_is_not_on_the_named_platform(node, domains,
     executor.shutdown()
     other.destroy_node()
     rclpy.shutdown(context=context)
+
+
+@needs_manycore
+@pytest.mark.parametrize("start", ["", " ", "+"], ids=ascii)
+@pytest.mark.parametrize("number", ["7", "010", "0x5", "0X1f", "7x", "00"])
+def test_python_reads_the_domain_as_rcl_and_the_middleware_do(monkeypatch, start, number):
+    """Otherwise a program looks for its platform where the middleware is not."""
+    monkeypatch.setenv("ROS_DOMAIN_ID", start + number)
+    named = os.environ["MANYCORE_PLATFORM"]
+    context = rclpy.Context()
+    rclpy.init(context=context)
+    domain = context.get_domain_id()
+    assert (PLATFORMS / named).exists()
+    rclpy.shutdown(context=context)
+    assert default_platform(domain) == named
+    monkeypatch.delenv("MANYCORE_PLATFORM")
+    assert default_platform() == f"domain-{domain}"
 
 
 def talk_in_domain(domain: int) -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ros.domain import checked_platform, default_platform, is_elsewhere
+from rmw_manycore_py.ros.domain import checked_platform, default_platform, is_elsewhere, ros_domain
 
 pytestmark = pytest.mark.unit
 
@@ -38,10 +38,34 @@ def test_a_named_platform_is_that_of_one_domain(monkeypatch: pytest.MonkeyPatch)
     assert [default_platform(domain) for domain in (0, 7)] == ["robot", "domain-7"]
 
 
-@pytest.mark.parametrize(("domain", "expected"), [("7", False), ("07", False), ("8", True)])
+@pytest.mark.parametrize(
+    ("domain", "expected"), [("7", False), ("07", False), ("0x7", False), ("8", True)]
+)
 def test_a_node_with_another_domain_than_its_run_is_elsewhere(domain: str, expected: bool) -> None:
     assert is_elsewhere({"ROS_DOMAIN_ID": domain}) is expected
     assert is_elsewhere({"A": "b"}) is False
+
+
+@pytest.mark.parametrize(
+    ("text", "domain"), [("", 0), ("08", None), ("010", 8), ("0x5", 5), (" +7", 7), ("232", 232)]
+)
+def test_a_domain_is_read_as_by_rcl(
+    monkeypatch: pytest.MonkeyPatch, text: str, domain: int | None
+) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", text)
+    if domain is None:
+        with pytest.raises(ManycoreError, match=f"expected a number .*, found '{text}'"):
+            ros_domain()
+    else:
+        assert ros_domain() == domain
+        assert default_platform() == f"domain-{domain}"
+
+
+@pytest.mark.parametrize("text", ["x", "5x", "-1", "233", " ", "0x", "9" * 30])
+def test_what_is_no_domain_is_refused(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", text)
+    with pytest.raises(ManycoreError, match=f"ROS_DOMAIN_ID: expected .*, found '{text}'"):
+        ros_domain()
 
 
 NO_NAMES = (
