@@ -25,10 +25,10 @@ struct Placement {
   WaitMode wait_mode = WaitMode::block;
   std::string label;  ///< shown by the tools; default: name of the program
 
-  /// Placement in a ROS domain, by default in that of ROS_DOMAIN_ID. There MANYCORE_PLATFORM,
-  /// MANYCORE_CLUSTER and MANYCORE_CORE apply; any other domain is the platform "domain-<id>",
-  /// which the process joins on cluster 1, without a core. Also reads MANYCORE_WAIT. Throws
-  /// Error{invalid_argument} naming the variable.
+  /// Placement in a ROS domain, by default in that of ROS_DOMAIN_ID: the platform "domain-<id>", or
+  /// MANYCORE_PLATFORM for that of ROS_DOMAIN_ID, on MANYCORE_CLUSTER and MANYCORE_CORE. These are
+  /// places of the named platform: a process beside it joins cluster 1, without a core. Also reads
+  /// MANYCORE_WAIT. Throws Error{invalid_argument} naming the variable.
   static Placement from_environment(std::optional<size_t> domain_id = std::nullopt);
   /// Throws Error{invalid_argument} unless such a platform has this cluster and core.
   void require_on(const Profile & profile) const;

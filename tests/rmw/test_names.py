@@ -146,6 +146,25 @@ def test_python_reads_the_domain_as_rcl_and_the_middleware_do(monkeypatch, start
     assert default_platform() == f"domain-{domain}"
 
 
+@needs_manycore
+def test_a_context_beside_the_named_platform_is_announced(domains, start_peer):
+    """A program that chooses its domain would otherwise not find the nodes of its platform."""
+    own, other = domains
+    peer = start_peer(open_contexts, own, other, ROS_DOMAIN_ID=str(own))
+    peer.wait_for("opened")
+    (warning,) = [line for line in peer.output.splitlines() if "MANYCORE_PLATFORM" in line]
+    assert f"is the platform of domain {own}" in warning
+    assert f"joins platform domain-{other}" in warning
+
+
+def open_contexts(*domains: int) -> None:
+    for domain in domains:
+        context = rclpy.Context()
+        rclpy.init(context=context, domain_id=domain)
+        rclpy.shutdown(context=context)
+    announce("opened")
+
+
 def talk_in_domain(domain: int) -> None:
     """Publish to a reader of the own domain, to show that messages arrive at all."""
     os.environ.pop("MANYCORE_PLATFORM", None)

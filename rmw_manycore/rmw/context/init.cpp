@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "rmw/init.h"
 
+#include <cstdlib>
 #include <memory>
 #include <string>
 
@@ -33,6 +34,22 @@ std::string private_platform(size_t domain_id) {
          std::to_string(own.start_time) + "-" + std::to_string(own.pid_namespace);
 }
 
+/// Says that a context which was given another domain than ROS_DOMAIN_ID is not on the named
+/// platform: its author may have expected it there.
+void warn_if_beside(const manycore::Placement & placement, size_t domain_id) {
+  const char * const named = std::getenv("MANYCORE_PLATFORM");
+  if (named == nullptr || *named == 0 || placement.platform == named) {
+    return;
+  }
+  const char * const own = std::getenv("ROS_DOMAIN_ID");
+  RCUTILS_LOG_WARN_NAMED(
+    identifier,
+    "MANYCORE_PLATFORM='%s' is the platform of domain %s: this context of domain %zu joins "
+    "platform %s; set ROS_DOMAIN_ID=%zu if it is meant for '%s'",
+    named, own == nullptr || *own == 0 ? "0" : own, domain_id, placement.platform.c_str(),
+    domain_id, named);
+}
+
 /// A platform is local to the machine, so all discovery ranges except OFF are equivalent.
 manycore::Placement placement_of(const rmw_init_options_t & options, size_t domain_id) {
   const rmw_discovery_options_t & discovery = options.discovery_options;
@@ -41,6 +58,8 @@ manycore::Placement placement_of(const rmw_init_options_t & options, size_t doma
     placement.platform = private_platform(domain_id);
     placement.cluster = 1;  // cluster and core were those of the shared platform
     placement.core.reset();
+  } else {
+    warn_if_beside(placement, domain_id);
   }
   if (discovery.static_peers_count != 0) {
     RCUTILS_LOG_WARN_NAMED(
