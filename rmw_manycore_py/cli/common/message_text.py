@@ -10,6 +10,8 @@ from typing import Any
 
 import yaml
 
+from rmw_manycore_py.cli.common.printing import printable
+
 # Default truncation length of `ros2 topic echo`.
 SHOWN_LENGTH = 128
 ELLIPSIS = "..."
@@ -60,6 +62,13 @@ _LinePerField.add_representer(
     dict,
     lambda dumper, fields: dumper.represent_mapping(
         "tag:yaml.org,2002:map", fields, flow_style=False
+    ),
+)
+# Printed, control characters are escaped; within double quotes, YAML reads the escapes back.
+_LinePerField.add_representer(
+    str,
+    lambda dumper, text: dumper.represent_scalar(
+        "tag:yaml.org,2002:str", text, style=None if printable(text) == text else '"'
     ),
 )
 

@@ -30,6 +30,7 @@ def test_names_are_escaped() -> None:
     assert escaped("a\x1b[31m\nb\t\r\x00\x9b\u202e\u2028") == (
         r"a\x1b[31m\nb\t\r\x00\x9b\u202e\u2028"
     )
+    assert escaped("\u200e\u200f\u061c") == "\u200e\u200f\u061c"
     assert escaped("/größe 😀 ‍") == "/größe 😀 ‍"
 
 

@@ -3,6 +3,7 @@
 
 import array
 import json
+import random
 
 import pytest
 import yaml
@@ -19,12 +20,39 @@ from rmw_manycore_py.cli.common.message_text import (
     to_plain,
     to_yaml,
 )
+from rmw_manycore_py.cli.common.printing import echo
 
 pytestmark = pytest.mark.unit
 
 
 def test_a_string_is_printed_as_ros2_prints_it() -> None:
     assert to_yaml(String(data="Hello World: 1")) == "data: 'Hello World: 1'\n"
+
+
+CONTROLS = [chr(code) for code in (*range(1, 0x20), *range(0x7F, 0xA1))]
+REORDERING = [chr(code) for code in (0x61C, *range(0x200B, 0x2010), *range(0x2028, 0x202F))]
+OTHERS = [*"ab :#-'\"\\,{}[]&*!|>%@`?~0", "\u2066", "\u2069", "\ufeff", "é", "א", "م", "😀"]
+
+
+def printed(text: str, capsys: pytest.CaptureFixture[str], **options: bool) -> str:
+    """Return a message with this text as it is printed."""
+    echo(to_yaml(String(data=text), Shown(), **options))
+    return capsys.readouterr().out
+
+
+@pytest.mark.parametrize("flow_style", [False, True])
+def test_any_string_is_read_back_from_what_is_printed(flow_style, capsys) -> None:
+    generator = random.Random(8)
+    for _ in range(2000):
+        parts = generator.choices([*CONTROLS, *REORDERING, *OTHERS], k=generator.randrange(9))
+        text = "".join(parts)
+        output = printed(text, capsys, flow_style=flow_style)
+        assert yaml.safe_load(output) == {"data": text}, output
+        assert not {*CONTROLS, "\u202e", "\u2066"} - {"\n", "\xa0"} & set(output)
+
+
+def test_marks_of_arabic_and_hebrew_texts_are_printed_as_they_are(capsys) -> None:
+    assert printed("abc\u200fdef\u200e\u061c", capsys) == "data: abc\u200fdef\u200e\u061c\n\n"
 
 
 def test_nested_messages_keep_the_order_of_their_fields() -> None:
