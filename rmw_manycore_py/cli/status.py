@@ -118,7 +118,7 @@ def _show(state: PlatformState | Unreadable) -> None:
     _show_processes(state)
     for topic in state.transfers:
         text = transfer_text(topic.transfer, topic.priority, topic.synchronous)
-        echo(f"{topic.name}: transfer {text}")
+        echo(f"{escaped(topic.name)}: transfer {text}")
     for loss in state.losses:
         names = escaped(f"{loss['node']} {loss['topic']}")
         echo(f"{names}: {loss['counter']} {loss['count']}")

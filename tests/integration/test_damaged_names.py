@@ -82,15 +82,18 @@ def test_names_reach_no_terminal_as_control_characters(talker, rows, start, plat
     start(example_command("listener")).wait_for("I heard")
     overwrite_name(platform, b"talker", CONTROLS.encode())
     overwrite_name(platform, b"/chatter", f"/{CONTROLS}".encode())
+    overwrite_name(platform, b"std_msgs/msg/String", f"std_msgs/{CONTROLS}".encode())
     label = next(row["label"] for row in rows("status")[0]["processes"] if "talker" in row["label"])
     overwrite_text(platform, label.encode(), CONTROLS.encode()[: len(label)])
     verbs = ("status", "node list", "topic list -v", "topic list -t", "top --count 1", "doctor")
-    for verb in (*verbs, f"topic info -v /{CONTROLS}", f"node info /{CONTROLS}"):
-        words = verb.split(" ", 3 if "-v /" in verb else 2 if "info" in verb else -1)
+    named = ("topic info -v", "topic info", "topic type", "node info")
+    for verb in (*verbs, *named):
+        words = (*verb.split(), f"/{CONTROLS}") if verb in named else verb.split()
         option = () if verb == "doctor" else ("--platform", platform)
         program = start(manycore_command(*words, *option))
         program.wait()
         assert program.output, verb
+        assert not any(line.startswith("[/b]") for line in program.output.split("\n")), program
         strange = {c for c in program.output if not c.isprintable()} - {"\n"}
         assert (strange, "Traceback" in program.output) == (set(), False), program
         if verb != "doctor":

@@ -30,7 +30,7 @@ def command(action: str, platform: str, as_json: bool, show_types: bool, count: 
     if as_json:
         print_json(row)
         return
-    echo(f"Action: {action}")
+    echo(escaped(f"Action: {action}"))
     for role in ("clients", "servers"):
         echo(f"Action {role}: {len(row[role])}")
         for end in [] if count else row[role]:

@@ -44,4 +44,4 @@ def unknown(name: str, kind: str, rows: Sequence[Row]) -> ManycoreError:
 def show_types(rows: Sequence[Row], name: str, kind: str) -> None:
     """Print the types of the named entity, one per line."""
     for type_name in row_of(rows, name, kind)["types"]:
-        echo(type_name)
+        echo(escaped(type_name))

@@ -11,7 +11,7 @@ from rmw_manycore_py.cli.common.options import (
     json_option,
     platform_option,
 )
-from rmw_manycore_py.cli.common.printing import echo, print_json
+from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.component.containers import (
     Container,
@@ -46,6 +46,6 @@ def command(container: str | None, containers_only: bool, as_json: bool, platfor
         return
     for name, components in found.items():
         if not container:
-            echo(name)
+            echo(escaped(name))
         for unique_id, node in components:
-            echo(("" if container else "  ") + f"{unique_id}  {node}")
+            echo(escaped(("" if container else "  ") + f"{unique_id}  {node}"))

@@ -12,7 +12,7 @@ from rmw_manycore_py.cli.common.options import (
     json_option,
     platform_option,
 )
-from rmw_manycore_py.cli.common.printing import echo, print_json
+from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.lifecycle.services import (
     Lifecycle,
@@ -42,4 +42,4 @@ def command(node: str | None, platform: str, as_json: bool, hidden: bool) -> Non
         print_json({name: {"id": s.id, "label": s.label} for name, s in states.items()})
         return
     for name, state in states.items():
-        echo(("" if node else f"{name}: ") + f"{state.label} [{state.id}]")
+        echo(escaped(("" if node else f"{name}: ") + f"{state.label} [{state.id}]"))

@@ -13,7 +13,7 @@ from rmw_manycore_py.cli.common.options import (
     json_option,
     platform_option,
 )
-from rmw_manycore_py.cli.common.printing import echo, print_json
+from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 from rmw_manycore_py.cli.lifecycle.services import lifecycle_nodes
 from rmw_manycore_py.ros.names import is_hidden
 
@@ -35,4 +35,4 @@ def command(platform: str, count: bool, hidden: bool, everything: bool, as_json:
         echo(len(names))
     else:
         for name in names:
-            echo(name)
+            echo(escaped(name))

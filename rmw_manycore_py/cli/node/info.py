@@ -31,7 +31,7 @@ def command(node: str, platform: str, as_json: bool, hidden: bool) -> None:
     if as_json:
         print_json({"node": node, **interfaces})
         return
-    echo(node)
+    echo(escaped(node))
     for kind, entries in interfaces.items():
         echo(f"  {kind.replace('_', ' ').title()}:")
         for name, type_name in entries.items():

@@ -17,7 +17,7 @@ from rmw_manycore_py.cli.common.options import (
     json_option,
     platform_option,
 )
-from rmw_manycore_py.cli.common.printing import echo, print_json
+from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
@@ -92,9 +92,10 @@ def command(
         return
     for name, types in found.items():
         if types and not node:
-            echo(f"{name}:")
+            echo(escaped(f"{name}:"))
         for parameter, type_name in types.items():
-            echo(f"  {parameter}" + (f" (type: {type_name})" if shows_types else ""))
+            of_type = f" (type: {type_name})" if shows_types else ""
+            echo(escaped(f"  {parameter}{of_type}"))
 
 
 def _pattern(expression: str) -> re.Pattern[str]:

@@ -14,7 +14,7 @@ from rmw_manycore_py.cli.common.options import (
     json_option,
     platform_option,
 )
-from rmw_manycore_py.cli.common.printing import echo, print_json
+from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 
 
 @click.command("info", epilog=examples("manycore service info /switch_lamp"))
@@ -30,6 +30,6 @@ def command(service: str, platform: str, as_json: bool) -> None:
         print_json(row)
         return
     types = row["types"]
-    echo(f"Type: {types[0] if len(types) == 1 else types}")
+    echo(escaped(f"Type: {types[0] if len(types) == 1 else types}"))
     echo(f"Clients count: {row['clients']}")
     echo(f"Services count: {row['servers']}")

@@ -42,7 +42,7 @@ def command(topic: str, platform: str, as_json: bool, verbose: bool) -> None:
         print_json({"topic": topic, **rows})
         return
     types = list(dict.fromkeys(e.type for e in endpoints))
-    echo(f"Type: {types[0] if len(types) == 1 else types}")
+    echo(escaped(f"Type: {types[0] if len(types) == 1 else types}"))
     for title, found in (("Publisher", publishers), ("Subscription", subscriptions)):
         if not verbose:
             echo(f"{title} count: {len(found)}")
