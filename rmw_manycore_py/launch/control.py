@@ -159,9 +159,10 @@ class Control:
 
 
 def _refuse(client: socket.socket, reason: str) -> None:
+    """Refuse a client; it may be `manycore stop`, so the reason names the signal that does that."""
     with client:
         client.setblocking(False)
-        client.send(encoded({"error": reason}))
+        client.send(encoded({"error": f"{reason}; kill {os.getpid()} stops the run"}))
 
 
 def _is_allowed(client: socket.socket) -> bool:

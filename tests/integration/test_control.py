@@ -10,6 +10,7 @@ import json
 import os
 import random
 import resource
+import signal
 import socket
 from collections.abc import Iterator
 from contextlib import ExitStack, suppress
@@ -246,6 +247,19 @@ def test_thousands_of_clients(run, platform) -> None:
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
     wait_until(lambda: "nodes" in asked(platform, b'{"do": "state"}')[0], "there is room again")
+
+
+def test_a_run_without_room_for_a_client_can_be_stopped(start, run, platform) -> None:
+    with ExitStack() as stack:
+        for _ in range(MAX_CLIENTS):
+            stack.enter_context(Client(platform))
+        stop = start(manycore_command("stop", "--platform", platform))
+        assert stop.wait() == 1
+        pid = supervisor(platform)
+        assert f"kill {pid} stops the run" in stop.output
+        os.kill(pid, signal.SIGTERM)
+        run.wait()
+        assert "supervisor failed" not in run.output
 
 
 def test_a_supervisor_without_descriptors_turns_clients_away(run, platform) -> None:
