@@ -9,7 +9,7 @@ from collections.abc import Awaitable, Callable
 
 from aiohttp import web
 
-from rmw_manycore_py.view.client_user import user_of_client
+from rmw_manycore_py.view.client_user import ClientUsers
 from rmw_manycore_py.view.listener import ADDRESS, Listener
 
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
@@ -34,6 +34,7 @@ class Access:
         self.listener = listener
         self._hosts = {f"{name}:{listener.port}" for name in (ADDRESS, "localhost")}
         self._origins = {f"http://{host}" for host in self._hosts}
+        self._users = ClientUsers()
 
     @web.middleware
     async def check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
@@ -52,8 +53,8 @@ class Access:
         if request.headers.get("Host") not in self._hosts:
             # DNS rebinding: a foreign page resolves its own name to this address.
             return "manycore view answers to 127.0.0.1 and localhost only"
-        if not _is_of_this_user(request):
-            return "manycore view answers to the user who started it only"
+        if refusal := self._refusal_of_user(request):
+            return refusal
         origin = request.headers.get("Origin")
         must_have_one = request.method != "GET" or "Upgrade" in request.headers
         if origin not in self._origins and (origin is not None or must_have_one):
@@ -62,6 +63,18 @@ class Access:
         given = request.path.removeprefix("/").partition("/")[0].encode(errors="replace")
         if not hmac.compare_digest(given, self.listener.token.encode()):
             return "wrong token: open the link that this manycore view has printed"
+        return ""
+
+    def _refusal_of_user(self, request: web.Request) -> str:
+        """Return why the sender is rejected: neither this user nor a relay of the system (WSL)."""
+        try:
+            user = self._users.of(request.transport)
+        except OSError as error:
+            return f"manycore view cannot tell which user asks: {error}"
+        if user is None:
+            return "manycore view cannot tell which user asks: /proc/net/tcp lacks the connection"
+        if user not in (os.geteuid(), 0):
+            return "manycore view answers to the user who started it only"
         return ""
 
 
@@ -73,12 +86,3 @@ async def _handled(request: web.Request, handler: Handler) -> web.StreamResponse
         raise
     except OSError as error:
         return web.Response(status=404, text=error.strerror)
-
-
-def _is_of_this_user(request: web.Request) -> bool:
-    """Return whether the browser, or a relay of the system such as that of WSL, is this user's."""
-    transport = request.transport
-    if transport is None:
-        return False
-    ends = (transport.get_extra_info("peername"), transport.get_extra_info("sockname"))
-    return None not in ends and user_of_client(*ends) in (os.geteuid(), 0)
