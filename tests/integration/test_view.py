@@ -99,10 +99,11 @@ def test_another_user_who_has_seen_the_link_is_refused(view) -> None:
     assert answer(link)[0] == 200
 
 
-def test_a_request_without_its_sender_is_refused(view) -> None:
+def test_a_request_without_its_sender_is_refused(talking, view, platform, start) -> None:
     """The kernel forgets whose socket it was; while the server is stopped, the sender leaves."""
     program, link = view
     host, port = link.split("/")[2].split(":")
+    wait_until(lambda: answer(link + "chip.svg")[0] == 200, "a trace could be started")
     os.kill(program.pid, signal.SIGSTOP)
     with socket.create_connection((host, int(port))) as client:
         origin, path = f"http://{host}:{port}", f"/{link.split('/', 3)[3]}trace/start"
@@ -114,6 +115,9 @@ def test_a_request_without_its_sender_is_refused(view) -> None:
     assert user_of_client(here, there) is None
     os.kill(program.pid, signal.SIGCONT)
     assert answer(link)[0] == 200
+    status = start(forked_manycore("trace", "status", "--platform", platform, "--json"))
+    assert status.wait() == 0, status
+    assert not json.loads(status.output)["on"], status
 
 
 def test_the_user_of_a_connection_is_known(view) -> None:
