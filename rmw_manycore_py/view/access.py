@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import hmac
 import os
 from collections.abc import Awaitable, Callable
@@ -25,6 +26,8 @@ _HEADERS = {
     "Cache-Control": "no-store",
     "Cross-Origin-Resource-Policy": "same-origin",
 }
+
+_NOT_FOUND = (errno.ENOENT, errno.ENAMETOOLONG, errno.ENOTDIR)
 
 
 class Access:
@@ -79,10 +82,11 @@ class Access:
 
 
 async def _handled(request: web.Request, handler: Handler) -> web.StreamResponse:
-    """Await the handler; a file that cannot be read is not found, e.g. for its long name."""
+    """Await the handler; a path that cannot be a file is not found, e.g. for its long name."""
     try:
         return await handler(request)
     except ConnectionError:  # the page was closed
         raise
     except OSError as error:
-        return web.Response(status=404, text=error.strerror)
+        status = 404 if error.errno in _NOT_FOUND else 500
+        return web.Response(status=status, text=error.strerror or str(error))

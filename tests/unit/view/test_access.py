@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import asyncio
+import errno
+import os
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
@@ -56,3 +58,23 @@ def test_a_connection_is_looked_up_once(monkeypatch: pytest.MonkeyPatch, tmp_pat
             assert str(missing) in text
 
     served(hello, ask)
+
+
+@pytest.mark.parametrize(
+    ("error", "status"),
+    [
+        (OSError(errno.ENAMETOOLONG, os.strerror(errno.ENAMETOOLONG)), 404),
+        (FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT)), 404),
+        (OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)), 500),
+        (OSError("cannot be written"), 500),
+    ],
+)
+def test_only_a_path_that_is_none_is_not_found(error: OSError, status: int) -> None:
+    async def fails(_request: web.Request) -> web.StreamResponse:
+        raise error
+
+    async def ask(link: str) -> None:
+        async with ClientSession() as session:
+            assert await answer(session, link) == (status, error.strerror or str(error))
+
+    served(fails, ask)
