@@ -11,9 +11,10 @@ import sys
 import traceback
 import warnings
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Any, BinaryIO, NoReturn, TypeVar
 
 from typing_extensions import override
 
@@ -38,25 +39,20 @@ def read_in_child(file: Path, read: Callable[[], Content]) -> Content:
 
     :raises MapfileError: if `read` does, or if its process ends.
     """
-    receiver, sender = os.pipe()
     sys.stdout.flush()  # else the child would print it again
     sys.stderr.flush()
     dies = dies_with_this_process()
-    with warnings.catch_warnings():  # the child needs nothing that another thread may hold
-        warnings.simplefilter("ignore", DeprecationWarning)
-        pid = os.fork()
-    if pid == 0:
-        dies()
-        _run(file, read, sender)
-    os.close(sender)
-    try:
-        with open(receiver, "rb") as answers:
-            data = answers.read()
-    except BaseException:  # Ctrl-C
-        os.kill(pid, signal.SIGKILL)
-        raise
-    finally:
-        _, status = os.waitpid(pid, 0)
+    # A file: a pipe has no end as long as a process that the launch file forks keeps it open.
+    with open(os.memfd_create("launch_file"), "w+b") as answers:
+        with warnings.catch_warnings():  # the child needs nothing that another thread may hold
+            warnings.simplefilter("ignore", DeprecationWarning)
+            pid = os.fork()
+        if pid == 0:
+            dies()
+            _run(file, read, answers)
+        status = _status(pid)
+        answers.seek(0)
+        data = answers.read()
     if status != 0 or not data:
         raise MapfileError(Problem(file, 0, "", "launch code that returns", _ending(status)))
     answer: _Answer = pickle.loads(data)
@@ -67,13 +63,24 @@ def read_in_child(file: Path, read: Callable[[], Content]) -> Content:
     return content
 
 
-def _run(file: Path, read: Callable[[], Any], sender: int) -> NoReturn:
+def _status(pid: int) -> int:
+    """Wait for the child; Ctrl-C kills it."""
+    try:
+        return os.waitpid(pid, 0)[1]
+    except BaseException:
+        with suppress(ProcessLookupError, ChildProcessError):  # it has ended already
+            os.kill(pid, signal.SIGKILL)
+            os.waitpid(pid, 0)
+        raise
+
+
+def _run(file: Path, read: Callable[[], Any], answers: BinaryIO) -> NoReturn:
     status = 1
     try:
         data = _read(file, read)
         sys.stdout.flush()
-        with open(sender, "wb") as answers:
-            answers.write(data)
+        answers.write(data)
+        answers.flush()
         status = 0
     except Exception:
         traceback.print_exc()

@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from support import TIMEOUT_S
 
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import check
@@ -191,6 +193,21 @@ def test_what_a_launch_file_changes_in_its_process(
     assert "REMOVED" not in os.environ
     assert os.getcwd() != "/"
     assert "http.server" not in set(sys.modules) - modules
+
+
+def test_a_process_that_a_launch_file_leaves_delays_nothing(
+    read_python: Read, tmp_path: Path
+) -> None:
+    waited = tmp_path / "waited"
+    lines = (
+        "pid = os.fork()",
+        "if pid == 0:",
+        f"    import time; time.sleep({TIMEOUT_S}); open({str(waited)!r}, 'w'); os._exit(0)",
+    )
+    launch = read_python("node('e', arguments=[str(pid)])", "\n    ".join(lines))
+    assert not waited.exists()
+    (node,) = launch.nodes
+    os.kill(int(node.arguments[0]), signal.SIGKILL)
 
 
 def test_paths_and_contents_of_files(read_python: Read, tmp_path: Path) -> None:
