@@ -19,7 +19,19 @@ from rmw_manycore_py.bench.scale import (
 )
 from rmw_manycore_py.bench.summary import Result
 
-PARTS = (threads, composed, endpoints, sources, history, holds, clock, sim_time, clients, crowd, nodes)
+PARTS = (
+    threads,
+    composed,
+    endpoints,
+    sources,
+    history,
+    holds,
+    clock,
+    sim_time,
+    clients,
+    crowd,
+    nodes,
+)
 
 
 def measure(run: Run) -> list[Result]:

@@ -7,13 +7,22 @@ from functools import partial
 
 from rmw_manycore_py.bench.contenders import FAST_DDS, Middleware
 from rmw_manycore_py.bench.question import Run
-from rmw_manycore_py.bench.scale.common import CLUSTERS, OWN, along, at_count, on_curve
+from rmw_manycore_py.bench.scale.common import (
+    CLUSTERS,
+    OWN,
+    along,
+    at_count,
+    followed,
+    on_curve,
+)
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
 
 JOIN = "joining at one moment, until the last process has"
 PUBLISHERS = {0: "", 5: ", five publishers each"}
 PROCESSES = (50, 100, 200, 500)
+# Its processes discover each other pairwise.
+MOST_PROCESSES_OF_FAST_DDS = 100
 ROUNDS = 5
 
 
@@ -24,7 +33,8 @@ def measure(run: Run) -> list[Result]:
         for publishers, curve in PUBLISHERS.items():
             measured = partial(_join, run, middleware, publishers)
             name = f"{JOIN}: {middleware.name}{curve}"
-            results += along(run, name, PROCESSES, "processes", measured)
+            counts = followed(middleware, PROCESSES, MOST_PROCESSES_OF_FAST_DDS)
+            results += along(run, name, counts, "processes", measured)
     return results
 
 
