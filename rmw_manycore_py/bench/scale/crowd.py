@@ -18,8 +18,8 @@ from rmw_manycore_py.bench.scale.common import (
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
 
-JOIN = "joining at one moment, until the last process has"
-PUBLISHERS = {0: "", 5: ", five publishers each"}
+JOIN = "joining at one moment"
+PUBLISHERS = {0: "", 5: ", 5 publishers each"}
 PROCESSES = (50, 100, 200, 500)
 # Its processes discover each other pairwise.
 MOST_PROCESSES_OF_FAST_DDS = 100
