@@ -86,7 +86,8 @@ void RobustMutex::unlock() noexcept { pthread_mutex_unlock(&mutex_); }
 
 void RobustMutex::mark_owner_died(pid_t thread) noexcept {
   int seen = mutex_.__data.__lock;
-  if ((static_cast<uint32_t>(seen) & FUTEX_TID_MASK) == static_cast<uint32_t>(thread)) {
+  const auto owner = static_cast<pid_t>(static_cast<uint32_t>(seen) & FUTEX_TID_MASK);
+  if (thread != 0 && owner == thread) {
     __atomic_compare_exchange_n(
       &mutex_.__data.__lock, &seen, static_cast<int>(FUTEX_OWNER_DIED), false, __ATOMIC_ACQ_REL,
       __ATOMIC_RELAXED);

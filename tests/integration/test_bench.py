@@ -135,7 +135,7 @@ def test_a_message_wakes_one_thread_of_many() -> None:
 
 def test_many_matches_are_measured() -> None:
     rows = run_bench("scale", "--only", "as many publishers: manycore")["results"]
-    assert len({row["question"] for row in rows}) == 5
+    assert len({row["question"] for row in rows}) == 6
     assert {row["axis"] for row in rows} == {"endpoints"}
     assert all(row["median"] > 0 for row in rows)
 

@@ -145,7 +145,7 @@ def test_lines_that_seem_held_need_force(clean, talker, platform) -> None:
     assert not (PLATFORMS / platform).exists()
 
 
-def test_what_is_left_is_said(start, private_directory, platform) -> None:
+def test_clean_reports_what_it_leaves(start, private_directory, platform) -> None:
     """Without names it is no failure to leave live platforms alone."""
 
     def clean(*words: str, status: int = 0) -> Program:

@@ -189,7 +189,7 @@ def test_other_entities_come_and_go_while_a_callback_runs(node, arrivals_of):
 
 
 def test_callbacks_that_clear_each_other_do_not_meet(node, arrivals_of):
-    """One is told of an earlier message when it is set, while the other one runs."""
+    """One has an earlier message to report when it is set, while the other one runs."""
     entered, is_set, in_time = threading.Event(), threading.Event(), []
     told: list[Arrivals] = []
 

@@ -305,7 +305,8 @@ std::string TopicDsmWriter::refusal_text(uint64_t need_bytes) const {
   const uint64_t helps = align_up(2 * need_bytes, mebibyte);
   return " does not fit: a topic DSM grows to at most half of the SMEM of its cluster, which has " +
          std::to_string(cluster_.size()) + " bytes; in a mapfile, set smem_size to at least " +
-         std::to_string(helps) + (need_bytes < cluster_.size() ? ", or " + own_size : "");
+         std::to_string(helps) + (need_bytes < cluster_.size() ? ", or " + own_size : "") +
+         "; without a mapfile, SMEM follows the size of /dev/shm";
 }
 
 }  // namespace manycore
