@@ -149,6 +149,18 @@ def test_names_that_exist_are_listed(start, manycore, follow) -> None:
     assert "/talker" in follow(traced, "manycore node list").lines
 
 
+@pytest.mark.parametrize(
+    ("command", "advised"),
+    [
+        (("component", "unload", "/no_container", "1"), "manycore component list"),
+        (("lifecycle", "get", "/no_node"), "manycore lifecycle nodes"),
+    ],
+)
+def test_containers_and_lifecycle_nodes_are_listed(start, manycore, follow, command, advised):
+    start(forked_example("talker")).wait_for("Publishing")
+    follow(manycore(*command, status=1), advised)
+
+
 def test_a_dead_platform_is_removed(start, manycore, platform) -> None:
     """Without names, `manycore clean` would also remove what other tests are looking at."""
     start(forked_example("talker")).wait_for("Publishing")
