@@ -120,7 +120,7 @@ class Target:
         self._sent = 0
 
     def mutate(self, count: int) -> None:
-        """Send so many mutated requests and responses, and wait until each is counted."""
+        """Send `count` mutated requests and responses, and wait until each is counted."""
         for role, (sender, gid) in self._senders.items():
             for number in range(count):
                 sender.publish(mutated(self._valid[role]), client=gid, number=number + 1)
