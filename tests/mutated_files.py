@@ -23,7 +23,6 @@ from rmw_manycore_bridge.config import load_bridge_file
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import check
 from rmw_manycore_py.mapfile.launch_file import read_launch_file
-from rmw_manycore_py.mapfile.placing.parameter_files import parameters_in
 
 REPOSITORY = Path(__file__).parents[1]
 FOLDERS = (
@@ -42,10 +41,19 @@ def reader_of(file: Path) -> Callable[[Path], object] | None:
     if file.parent.name == "files":
         return lambda path: load_bridge_file(path, inside=2)
     if file.name.endswith(".params.yaml"):
-        return lambda path: parameters_in(path, "/talker")
+        return check_parameters
     if file.parent.name in ("launch_scripts", "invalid_launch"):
         return read_launch_file
     return check if file.suffix in (".yaml", ".map") else None
+
+
+def check_parameters(file: Path) -> object:
+    """Check a mapfile whose node has this parameter file."""
+    mapfile = file.with_name("with_parameters.yaml")
+    mapfile.write_text(
+        f"nodes: {{talker: {{cluster: 1, command: [sh], param_file: {file.name}}}}}\n"
+    )
+    return check(mapfile)
 
 
 def corpus(directory: Path) -> list[list[Path]]:

@@ -7,8 +7,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from rmw_manycore_py.mapfile.placing.parameter_files import parameters_in
+from rmw_manycore_py.mapfile.placing.parameters import read_all
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode, Placement
+from rmw_manycore_py.ros.parameter_files import values_for
 
 # Terms of ROS-lite2, section V-A: lines per node, and per topic of a node.
 _LINES_PER_NODE = 10
@@ -46,8 +47,7 @@ def delta_loc(nodes: Iterable[PlacedNode]) -> int:
 
 
 def _parameters(node: PlacedNode) -> int:
-    from_files = (parameters_in(file, node.full_name) for file in node.param_files)
-    return len(set(node.parameters).union(*from_files))
+    return len(values_for(read_all(node.parameter_sources), node.full_name))
 
 
 def _topics(node: PlacedNode) -> int:

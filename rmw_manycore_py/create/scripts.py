@@ -39,14 +39,12 @@ def _scheduler(node: PlacedNode) -> str:
 
 def _command(node: PlacedNode, parameter_files: list[PurePosixPath]) -> list[str]:
     """Return the command, one option per line; parameters come from files."""
-    options = [" ".join(shlex.quote(word) for word in node.program)]
-    words = list(node.ros_arguments)
-    if words:
-        options.append(words.pop(0))
-    while words:
-        flag, value, *words = words
-        if flag not in ("-p", "--params-file"):
-            options.append(f"{flag} {shlex.quote(value)}")
+    options = [shlex.join(node.program)]
+    for word in node.ros_arguments:
+        if word.startswith("-"):
+            options.append(shlex.quote(word))
+        else:
+            options[-1] += f" {shlex.quote(word)}"
     options += [f'--params-file "$created"/{shlex.quote(str(file))}' for file in parameter_files]
     last = len(options) - 1
     return [f"  {option}" + (" \\" if i < last else ' "$@"') for i, option in enumerate(options)]

@@ -8,6 +8,7 @@ from contextlib import AbstractContextManager, ExitStack, closing, contextmanage
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
@@ -21,8 +22,9 @@ from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.ros2_daemon import CURE, end_lone_daemons
 from rmw_manycore_py.launch.runner import Report, Runner
 from rmw_manycore_py.launch.traced import traced
-from rmw_manycore_py.mapfile.placing.placement import Placement
+from rmw_manycore_py.mapfile.placing.placement import PARAMETERS, Placement
 from rmw_manycore_py.runs.directory import OwnRun, new_run
+from rmw_manycore_py.runs.private import write_private
 from rmw_manycore_py.scheduling import refusal
 from rmw_manycore_py.signals import SignalInbox, signal_inbox
 from rmw_manycore_py.topology import RECEIVE_THREAD_CORE
@@ -69,18 +71,21 @@ class Run:
         """
         with signal_inbox() as inbox, ExitStack() as stack:
             own = stack.enter_context(self._directory(report))
-            return self._run(inbox, _Reports(report, own), duration_s, all_started, trace)
+            parameters = stack.enter_context(_generated_files(self._placement, own))
+            reports = _Reports(report, own)
+            return self._run(inbox, parameters, reports, duration_s, all_started, trace)
 
     def _run(
         self,
         inbox: SignalInbox,
+        parameters: Path,
         reports: _Reports,
         duration_s: float | None,
         all_started: Callable[[], None] | None,
         trace: Path | None,
     ) -> int:
         placement, report = self._placement, reports.report
-        nodes = [NodeProgram.of(node) for node in placement.nodes]
+        nodes = [NodeProgram.of(node, parameters) for node in placement.nodes]
         programs = [*self._bridge, *nodes, *self._helpers]
         with closing(Runner(programs, report)) as runner, reports.kept(runner, self.program_names):
             for text in placement.notices:
@@ -184,6 +189,21 @@ class _Reports:
             self._logs = self._control = None
             control.close()
             logs.close()
+
+
+@contextmanager
+def _generated_files(placement: Placement, own: OwnRun | None) -> Iterator[Path]:
+    """Write the parameter files of the nodes into the run's directory, or a temporary one."""
+    with ExitStack() as stack:
+        if own is None:
+            directory = Path(stack.enter_context(TemporaryDirectory(prefix="manycore_")))
+        else:
+            directory = own.directory.path / PARAMETERS
+        for node in placement.nodes:
+            for file in node.generated_files:
+                directory.mkdir(0o700, exist_ok=True)
+                write_private(directory / file.name, file.text)
+        yield directory
 
 
 def _check_scheduling(placement: Placement) -> None:

@@ -11,7 +11,8 @@ from pathlib import Path
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, MapfileError
 from rmw_manycore_py.mapfile.launch_file import LaunchedNode, read_launch_file
-from rmw_manycore_py.mapfile.placing.launched import Launched, program_of
+from rmw_manycore_py.mapfile.placing.launched import program_of
+from rmw_manycore_py.mapfile.placing.parameters import Launched
 from rmw_manycore_py.mapfile.programs.executables import find_module
 from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
 from rmw_manycore_py.ros.names import full_node_name

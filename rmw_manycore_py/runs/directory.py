@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Directories of runs with their logs and control sockets, and which runs are alive.
 
-    $MANYCORE_STATE/runs/PLATFORM/NUMBER/{lock, control, run.json, log/}
+    $MANYCORE_STATE/runs/PLATFORM/NUMBER/{lock, control, run.json, log/, parameters/}
 
 The lock proves that a run is alive: the kernel releases it when the supervisor dies.
 """

@@ -195,6 +195,14 @@ def test_parameters_with_the_options_of_ros2(running, manycore, tmp_path) -> Non
     assert manycore(*load, "--no-use-wildcard") == "Set parameter name successful"
     assert manycore("param", "get", "/filter", "gain") == "Double value is: -1.5"
     assert manycore(*load).splitlines()[0] == "Set parameter gain successful"
+    file.write_text("/**/filter: {ros__parameters: {gain: 1.0, gain: -.5, left_out: []}}\n")
+    assert manycore(*load) == "Set parameter gain successful"
+    assert manycore("param", "get", "/filter", "gain") == "Double value is: -0.5"
+    assert "no parameters for /filter: there are some for /**/filter" in manycore(
+        *load, "--no-use-wildcard", status=2
+    )
+    file.write_text("/filter:\n  ros__parameters: {gain: [1, a]}\n")
+    assert f"{file}:2: expected a parameter file that rcl reads" in manycore(*load, status=2)
     missing = manycore("param", "get", "/filter", "gian", status=1)
     assert missing == "manycore: Parameter not set: /filter has no gian; did you mean 'gain'?"
     missing = manycore("param", "get", "filtr", "gain", "--timeout", "0", status=1)

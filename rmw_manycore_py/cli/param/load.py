@@ -17,7 +17,9 @@ from rmw_manycore_py.errors import ManycoreError
 @click.command("load", epilog=examples("manycore param load /controller controller.yaml"))
 @click.argument("node", shell_complete=complete_nodes)
 @click.argument("file", type=click.Path(dir_okay=False, exists=True))
-@click.option("--no-use-wildcard", is_flag=True, help="Skip parameters below /**.")
+@click.option(
+    "--no-use-wildcard", is_flag=True, help="Skip sections for several nodes, such as /**."
+)
 @named_node_options
 @timeout_option
 @platform_option

@@ -10,7 +10,7 @@ from typing import Any
 from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.cli.common.tool_node import ANSWER_TIMEOUT_S, result_of
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.mapfile.format.document import read_yaml
+from rmw_manycore_py.ros.parameter_files import applies, read_file, values_for
 
 # Index = value in rcl_interfaces/msg/ParameterType: the name, and ros2cli's label of a value.
 TYPES = (
@@ -87,19 +87,22 @@ def parameter_of(name: str, text: str | None) -> Any:
 def parameters_of_file(path: str, node: str, *, wildcard: bool = True) -> list[Any]:
     """Return the rcl_interfaces Parameters for a node in a parameter file.
 
-    With `wildcard`, include those for all nodes.
+    With `wildcard`, include those of sections for several nodes.
     """
-    from rclpy.parameter import parameter_dict_from_yaml_file
+    from rclpy.parameter import Parameter
 
-    try:
-        owners = read_yaml(Path(path)).data.keys()  # bounded in size, unlike rclpy's loader
-        fitting = ("/**", node, node.removeprefix("/"))[0 if wildcard else 1 :]
-        sections = [name for name in fitting if name in owners]
-        if not sections:
-            raise ValueError(f"there are some for {_list(owners)}")
-        return list(parameter_dict_from_yaml_file(path, target_nodes=sections).values())
-    except (AttributeError, RuntimeError, TypeError, ValueError) as error:
-        raise ManycoreError(f"{path}: no parameters for {node}: {error}", EXIT_BAD_INPUT) from error
+    sections = read_file(Path(path))
+    fitting = [
+        (name, values)
+        for name, values in sections
+        if applies(name, node) and (wildcard or "*" not in name)
+    ]
+    if not fitting:
+        known = _list(name for name, _ in sections) or "none"
+        reason = f"{path}: no parameters for {node}: there are some for {known}"
+        raise ManycoreError(reason, EXIT_BAD_INPUT)
+    values = values_for(fitting, node)
+    return [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
 
 
 def nested(values: Iterable[tuple[str, Any]]) -> dict[str, Any]:

@@ -39,11 +39,11 @@ class NodeProgram:
         return as_host_cpu(self.host_cpus)
 
     @classmethod
-    def of(cls, node: PlacedNode) -> NodeProgram:
-        """Return the program of a placed node."""
+    def of(cls, node: PlacedNode, parameters: Path) -> NodeProgram:
+        """Return the program of a placed node; its generated files are in `parameters`."""
         return cls(
             name=node.name,
-            command=tuple(node.argv),
+            command=tuple(node.command(parameters)),
             environment=program_environment(node.env),
             core=node.place,
             host_cpus=(node.host_cpu,),

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import yaml
@@ -79,6 +78,11 @@ class BoundedLoader(yaml.SafeLoader):
             _check_text(value, node)
         return value
 
+    def is_untyped(self, node: yaml.ScalarNode) -> bool:
+        """Return whether a scalar has neither quotes nor a tag."""
+        resolved = self.resolve(yaml.ScalarNode, node.value, (True, False))  # type: ignore[no-untyped-call]
+        return node.style is None and node.tag == resolved
+
     def _check(self, event: Any) -> None:
         if self._deepest > MAX_DEPTH:
             expected = f"at most {MAX_DEPTH} levels of nesting"
@@ -86,16 +90,6 @@ class BoundedLoader(yaml.SafeLoader):
         if self._values > MAX_VALUES:
             expected = f"at most {MAX_VALUES} values, each alias counted as what it stands for"
             raise BoundError(expected, "more", event.start_mark)
-
-
-# Numbers accepted by rcl; YAML 1.1 requires a point and a sign in 1e-9.
-_EXPONENT = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+$")
-BoundedLoader.add_implicit_resolver("tag:yaml.org,2002:float", _EXPONENT, list("-+.0123456789"))
-
-
-def is_number_to_rcl(text: str) -> bool:
-    """Return whether rcl reads a text as a number and YAML 1.1 does not."""
-    return _EXPONENT.match(text) is not None
 
 
 def _check_text(text: str, node: yaml.Node) -> None:

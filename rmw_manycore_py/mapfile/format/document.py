@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,8 +12,10 @@ import yaml
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_BYTES, BoundedLoader, BoundError
+from rmw_manycore_py.ros.parameter_files import read_scalar
 
 KeyPath = tuple[Any, ...]
+IsParameter = Callable[[KeyPath], bool]
 
 
 @dataclass
@@ -56,21 +58,29 @@ def read_text(path: Path, problem: Problem | None = None) -> str:
     return text
 
 
-def read_yaml(path: Path, repeated: Collection[str] = ()) -> Document:
+def read_yaml(
+    path: Path, repeated: Collection[str] = (), read_by_rcl: IsParameter | None = None
+) -> Document:
     """Read a YAML file; see `parse_yaml`."""
-    return parse_yaml(read_text(path), path, repeated)
+    return parse_yaml(read_text(path), path, repeated, read_by_rcl)
 
 
-def parse_yaml(text: str, path: Path, repeated: Collection[str] = ()) -> Document:
+def parse_yaml(
+    text: str,
+    path: Path,
+    repeated: Collection[str] = (),
+    read_by_rcl: IsParameter | None = None,
+) -> Document:
     """Parse a YAML text; report all duplicate keys in one error.
 
-    The mappings of top-level keys in `repeated` become lists of pairs and may repeat keys.
+    The mappings of top-level keys in `repeated` become lists of pairs and may repeat keys. Unquoted
+    scalars at paths for which `read_by_rcl` holds have the types that rcl gives them.
     """
     loader = None
     try:
         loader = BoundedLoader(text)
         root = loader.get_single_node()
-        reader = _Reader(path, loader, repeated)
+        reader = _Reader(path, loader, repeated, read_by_rcl)
         document = Document(path, reader.convert(root, ()) if root else None, reader.lines)
     except yaml.MarkedYAMLError as error:
         raise MapfileError(_problem(path, error)) from error
@@ -103,9 +113,16 @@ def _problem(path: Path, error: yaml.MarkedYAMLError, key: str = "") -> Problem:
 class _Reader:
     """Converts YAML nodes to data; records lines and duplicate keys."""
 
-    def __init__(self, file: Path, loader: BoundedLoader, repeated: Collection[str]) -> None:
+    def __init__(
+        self,
+        file: Path,
+        loader: BoundedLoader,
+        repeated: Collection[str],
+        read_by_rcl: IsParameter | None,
+    ) -> None:
         self._file = file
         self._repeated = repeated
+        self._read_by_rcl = read_by_rcl
         self._loader = loader
         self._open: set[int] = set()
         self.lines: dict[KeyPath, int] = {}
@@ -124,6 +141,7 @@ class _Reader:
                 return self._mapping(node, path)
             if isinstance(node, yaml.SequenceNode):
                 return [self.convert(item, (*path, i)) for i, item in enumerate(node.value)]
+            assert isinstance(node, yaml.ScalarNode)
             return self._scalar(node, path)
         finally:
             self._open.discard(id(node))
@@ -166,12 +184,15 @@ class _Reader:
             )
         return self._loader.scalar(node)
 
-    def _scalar(self, node: yaml.Node, path: KeyPath) -> Any:
+    def _scalar(self, node: yaml.ScalarNode, path: KeyPath) -> Any:
         try:
-            return self._loader.scalar(node)
+            value = self._loader.scalar(node)
         except BoundError as error:
             self.problems.append(_problem(self._file, error, dotted(path)))
             return None
+        if self._read_by_rcl and self._read_by_rcl(path) and self._loader.is_untyped(node):
+            return None if value is None else read_scalar(node.value)
+        return value
 
 
 def _is_none_entry(key: Any, node: yaml.MappingNode) -> bool:

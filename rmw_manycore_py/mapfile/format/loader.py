@@ -14,7 +14,7 @@ from rmw_manycore_py.mapfile.format.checks import (
     check_placement,
     check_starts,
 )
-from rmw_manycore_py.mapfile.format.document import Document, read_yaml
+from rmw_manycore_py.mapfile.format.document import Document, KeyPath, read_yaml
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
 from rmw_manycore_py.mapfile.format.model import MapfileSections, PlatformSection
 from rmw_manycore_py.mapfile.format.normalise import normalise
@@ -31,7 +31,7 @@ def load_mapfile(path: Path | str, *, starts_nodes: bool = True) -> Mapfile:
     :raises MapfileError: with all problems found.
     """
     path = Path(path)
-    document = read_yaml(path)
+    document = read_yaml(path, read_by_rcl=_is_parameter)
     if isinstance(document.data, list):
         document = from_list(document)
     if not isinstance(document.data, dict):
@@ -49,6 +49,12 @@ def load_mapfile(path: Path | str, *, starts_nodes: bool = True) -> Mapfile:
     if problems:
         raise MapfileError(*problems)
     return mapfile
+
+
+def _is_parameter(path: KeyPath) -> bool:
+    """Return whether a path is that of a value below `parameters` of a node."""
+    node = 1 if path and isinstance(path[0], int) else 2  # a .map file is a list of nodes
+    return path[node : node + 1] == ("parameters",) and (node == 1 or path[0] == "nodes")
 
 
 def _validate(document: Document) -> MapfileSections:

@@ -2,6 +2,8 @@
 """Reads ROS 2 launch files (XML, YAML, Python) without starting anything."""
 
 from rmw_manycore_py.mapfile.launch_file.launched import (
+    ExpandedFile,
+    ForAllNodes,
     LaunchedComponent,
     LaunchedNode,
     ParameterSource,
@@ -12,6 +14,8 @@ from rmw_manycore_py.mapfile.launch_file.launched import (
 from rmw_manycore_py.mapfile.launch_file.reader import LaunchFile, read_launch_file
 
 __all__ = [
+    "ExpandedFile",
+    "ForAllNodes",
     "LaunchFile",
     "LaunchedComponent",
     "LaunchedNode",

@@ -45,7 +45,6 @@ class ComposableNode:
         name = None if self.name is None else perform(context, self.name) or None
         given = "" if self.namespace is None else perform(context, self.namespace)
         namespace = join_namespace(context.scope.namespace, given)
-        full_name = f"{namespace.rstrip('/')}/{name or ''}"
         remappings = tuple((perform(context, a), perform(context, b)) for a, b in self.remappings)
         return LaunchedComponent(
             file=context.file,
@@ -54,9 +53,9 @@ class ComposableNode:
             plugin=perform(context, self.plugin),
             name=name,
             namespace=namespace,
-            parameters=context.scope.parameters + evaluate_all(context, self.parameters, full_name),
+            parameters=context.scope.parameters + evaluate_all(context, self.parameters),
             remappings=context.scope.remappings + remappings,
-            extra_arguments=evaluate_all(context, self.extra_arguments, full_name),
+            extra_arguments=evaluate_all(context, self.extra_arguments),
         )
 
 

@@ -12,7 +12,20 @@ from typing import Any
 from rmw_manycore_py.errors import Problem
 from rmw_manycore_py.ros.names import full_node_name
 
-ParameterSource = dict[str, Any] | Path
+
+class ForAllNodes(dict[str, Any]):
+    """Parameters that launch gives to all nodes of a process, by -p."""
+
+
+@dataclass(frozen=True)
+class ExpandedFile:
+    """A parameter file with its substitutions performed."""
+
+    file: Path
+    text: str
+
+
+ParameterSource = dict[str, Any] | Path | ExpandedFile
 
 
 @dataclass(frozen=True)
@@ -71,6 +84,7 @@ class LaunchedNode:
     arguments: tuple[str, ...]
     ros_arguments: tuple[str, ...]
     env: Mapping[str, str]
+    is_fully_named: bool = False  # name and namespace are given: launch addresses its values to it
     serial: int = 0
     number: int = 1  # among nodes of the same name
     prefix: tuple[str, ...] = ()

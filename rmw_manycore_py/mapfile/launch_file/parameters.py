@@ -8,19 +8,15 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from rmw_manycore_py.errors import MapfileError
-from rmw_manycore_py.mapfile.format.document import parse_yaml, read_yaml
-from rmw_manycore_py.mapfile.format.parameter_sections import sections_of
-from rmw_manycore_py.mapfile.format.validation import describe
+from rmw_manycore_py.mapfile.format.document import parse_yaml, read_text
 from rmw_manycore_py.mapfile.launch_file import text
 from rmw_manycore_py.mapfile.launch_file.context import (
     LaunchContext,
     LaunchFileError,
     NotInstalledError,
 )
-from rmw_manycore_py.mapfile.launch_file.launched import ParameterSource
+from rmw_manycore_py.mapfile.launch_file.launched import ExpandedFile, ForAllNodes, ParameterSource
 from rmw_manycore_py.mapfile.launch_file.substitutions import Substitution, is_true, perform
 
 _SCALARS = (bool, int, float, str)
@@ -60,8 +56,8 @@ class ParameterFile:
     def __init__(self, param_file: Any, *, allow_substs: Any = False) -> None:
         self.param_file, self.allow_substs = param_file, allow_substs
 
-    def evaluate(self, context: LaunchContext, node: str) -> ParameterSource:
-        """Return the file or, if it has substitutions, its parameters for `node`."""
+    def evaluate(self, context: LaunchContext) -> ParameterSource:
+        """Return the file, with its substitutions performed if it may have some."""
         path = Path(os.path.expanduser(perform(context, self.param_file)))
         if not os.path.isfile(path):
             if context.is_missing(path) or is_true(context, self.allow_substs):
@@ -70,22 +66,22 @@ class ParameterFile:
             return {}
         if not is_true(context, self.allow_substs):
             return path
-        return _expanded(context, path, node)
+        return ExpandedFile(path, perform(context, text.parse(read_text(path))))
 
 
-def evaluate_all(context: LaunchContext, sources: Any, node: str) -> tuple[ParameterSource, ...]:
-    """Return the parameters of a node in order; later ones take precedence."""
-    return tuple(_evaluate(context, source, node) for source in sources or ())
+def evaluate_all(context: LaunchContext, sources: Any) -> tuple[ParameterSource, ...]:
+    """Return the parameters of a node in the order in which launch gives them to rcl."""
+    return tuple(_evaluate(context, source) for source in sources or ())
 
 
-def _evaluate(context: LaunchContext, source: Any, node: str) -> ParameterSource:
+def _evaluate(context: LaunchContext, source: Any) -> ParameterSource:
     if isinstance(source, Mapping):
         return dict(_flat(context, source, ""))
     if isinstance(source, Parameter):
-        return {perform(context, source.name): source.value.evaluate(context)}
+        return ForAllNodes({perform(context, source.name): source.value.evaluate(context)})
     if isinstance(source, ParameterFile):
-        return source.evaluate(context, node)
-    return ParameterFile(source).evaluate(context, node)
+        return source.evaluate(context)
+    return ParameterFile(source).evaluate(context)
 
 
 def _flat(
@@ -130,26 +126,4 @@ def _typed(words: str) -> Any:
         return words
     if isinstance(value, list) and not all(isinstance(part, _SCALARS) for part in value):
         raise LaunchFileError("a list of bools, numbers or strings", repr(words))
-    if isinstance(value, float) and not isinstance(yaml.safe_load(words), float):
-        return words  # 1e-9 is a number for rcl, but not in YAML 1.1
     return value if isinstance(value, (bool, int, float, str, list)) else words
-
-
-def _expanded(context: LaunchContext, path: Path, node: str) -> dict[str, Any]:
-    document = read_yaml(path)
-    data = document.data or {}
-    if not isinstance(data, Mapping):
-        expected = "node names, each with 'ros__parameters'"
-        raise MapfileError(document.problem((), expected, describe(data)))
-    chosen: dict[str, Any] = {}
-    for section in sections_of(data, node):
-        chosen |= dict(_flat(context, _substitute(section), ""))
-    return chosen
-
-
-def _substitute(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {key: _substitute(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_substitute(item) for item in value]
-    return text.parse(value) if isinstance(value, str) and "$(" in value else value

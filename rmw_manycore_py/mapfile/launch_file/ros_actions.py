@@ -15,7 +15,7 @@ from rmw_manycore_py.mapfile.launch_file.context import (
     join_namespace,
 )
 from rmw_manycore_py.mapfile.launch_file.events import change_state
-from rmw_manycore_py.mapfile.launch_file.launched import LaunchedNode
+from rmw_manycore_py.mapfile.launch_file.launched import ForAllNodes, LaunchedNode
 from rmw_manycore_py.mapfile.launch_file.parameters import ParameterFile, evaluate_all
 from rmw_manycore_py.mapfile.launch_file.process_actions import ProcessAction
 from rmw_manycore_py.mapfile.launch_file.substitutions import is_true, perform
@@ -80,12 +80,12 @@ class Node(ProcessAction):
                 package=package,
                 executable=executable,
                 command=() if package else (executable,),
-                parameters=context.scope.parameters
-                + evaluate_all(context, self.parameters, full_name),
+                parameters=context.scope.parameters + evaluate_all(context, self.parameters),
                 remappings=context.scope.remappings + remappings,
                 arguments=tuple(perform(context, word) for word in self.arguments or ()),
                 ros_arguments=tuple(perform(context, word) for word in self.ros_arguments or ()),
                 env=options.env,
+                is_fully_named=name is not None and self._has_namespace(context),
                 serial=context.serial(self),
                 prefix=options.prefix,
                 cwd=options.cwd,
@@ -93,6 +93,9 @@ class Node(ProcessAction):
                 respawn=options.respawn,
             )
         )
+
+    def _has_namespace(self, context: LaunchContext) -> bool:
+        return self.namespace is not None or bool(context.scope.namespace)
 
 
 class LifecycleNode(Node):
@@ -145,7 +148,9 @@ class SetParameter(Action):
     @override
     def execute(self, context: LaunchContext) -> None:
         name = perform(context, self.name)
-        context.scope.parameters += evaluate_all(context, [{name: self.value}], "")
+        (values,) = evaluate_all(context, [{name: self.value}])
+        assert isinstance(values, dict)
+        context.scope.parameters += (ForAllNodes(values),)
 
 
 class SetParametersFromFile(Action):
@@ -157,7 +162,7 @@ class SetParametersFromFile(Action):
 
     @override
     def execute(self, context: LaunchContext) -> None:
-        context.scope.parameters += evaluate_all(context, [ParameterFile(self.filename)], "")
+        context.scope.parameters += evaluate_all(context, [ParameterFile(self.filename)])
 
 
 class SetUseSimTime(SetParameter):

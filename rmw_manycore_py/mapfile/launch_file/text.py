@@ -85,8 +85,8 @@ class _Reader:
                 plain = ""
                 parts.append(self._substitution())
                 continue
-            if self._text[self._at] == "\\" and self._text[self._at + 1 : self._at + 2] in "$\\\"'":
-                self._at += 1
+            if self._text[self._at] == "\\" and self._text[self._at + 1 : self._at + 2].strip("\n"):
+                self._at += 1  # launch takes any character after a backslash as it is
             plain += self._text[self._at : self._at + 1]
             self._at += 1
         return parts + ([s.TextSubstitution(text=plain)] if plain else [])

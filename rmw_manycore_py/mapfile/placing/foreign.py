@@ -46,7 +46,7 @@ def _foreign_start(mapfile: Mapfile, name: str) -> NodeStart:
         ros_arguments=False,
         namespace=None,
         parameters={},
-        param_files=(),
+        parameter_sources=(),
         remappings=(),
         arguments=(),
         raw_ros_arguments=(),

@@ -4,28 +4,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rmw_manycore_py.errors import MapfileError, Problem
-from rmw_manycore_py.mapfile.format.bounded_yaml import is_number_to_rcl
 from rmw_manycore_py.mapfile.launch_file import (
+    ExpandedFile,
     LaunchedComponent,
     LaunchedNode,
     LaunchFile,
     ParameterSource,
 )
-from rmw_manycore_py.mapfile.placing.parameter_files import parameters_in
+from rmw_manycore_py.mapfile.placing.parameters import Launched
 from rmw_manycore_py.mapfile.placing.placement import LaunchRules, PlacedComponent
 from rmw_manycore_py.mapfile.programs import executables
 from rmw_manycore_py.mapfile.programs.executables import Program
 from rmw_manycore_py.ros import ament
 from rmw_manycore_py.ros.names import full_node_name
+from rmw_manycore_py.ros.parameter_files import read_file, read_text, values_for
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile
-
-Launched = LaunchedNode | LaunchedComponent
 
 
 def find_launched(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> Launched | None:
@@ -70,7 +70,7 @@ def program_of(launched: Launched, directory: Path) -> Program:
     if found is None:
         problem = Problem(launched.file, launched.line, launched.label, expected, f"'{wanted}'")
         raise MapfileError(problem)
-    return Program((*launched.prefix, *found.argv), found.source)
+    return replace(found, prefix=launched.prefix)
 
 
 def _program_of_component(component: LaunchedComponent) -> Program:
@@ -130,19 +130,6 @@ def launch_rules(
     return rules, tuple(notices)
 
 
-def values_on_a_command_line(source: ParameterSource) -> ParameterSource:
-    """Return values as rcl parses them from launch, which writes 1e-9 unquoted, also as text."""
-    if isinstance(source, Path):
-        return source
-    return {name: _as_rcl_reads(value) for name, value in source.items()}
-
-
-def _as_rcl_reads(value: Any) -> Any:
-    if isinstance(value, list):
-        return [_as_rcl_reads(item) for item in value]
-    return float(value) if isinstance(value, str) and is_number_to_rcl(value) else value
-
-
 def _placed(component: LaunchedComponent) -> PlacedComponent:
     full_name = full_node_name(component.namespace, component.name or "")
     return PlacedComponent(
@@ -159,5 +146,10 @@ def _placed(component: LaunchedComponent) -> PlacedComponent:
 def _values(sources: tuple[ParameterSource, ...], full_name: str) -> dict[str, Any]:
     values: dict[str, Any] = {}
     for source in sources:
-        values |= parameters_in(source, full_name) if isinstance(source, Path) else source
+        if isinstance(source, Path):
+            values |= values_for(read_file(source), full_name)
+        elif isinstance(source, ExpandedFile):
+            values |= values_for(read_text(source.text, source.file), full_name)
+        else:
+            values |= source
     return values

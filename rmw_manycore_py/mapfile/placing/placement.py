@@ -8,11 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rmw_manycore_py.mapfile.placing.parameters import GeneratedFile, Source, words_of
 from rmw_manycore_py.routes import DIRECTIONS, Direction, Route
 from rmw_manycore_py.scheduling import Scheduling
 from rmw_manycore_py.topology import Core, Topology
 from rmw_manycore_py.transfers import transfer_text
 from rmw_manycore_py.words import Transfer
+
+PARAMETERS = "parameters"  # directory of generated files, of a run and of `manycore create`
 
 
 @dataclass(frozen=True)
@@ -58,13 +61,12 @@ class PlacedNode:
     :param cluster: counted from 1.
     :param core: counted from 0 in its cluster.
     :param host_cpu: CPU that the node is pinned to.
-    :param argv: command line.
     :param env: set on top of the caller's environment.
     :param cwd: working directory.
     :param program: command line without ROS arguments.
-    :param ros_arguments: what follows `program` in `argv`.
-    :param parameters: by name.
-    :param param_files: parameter files.
+    :param ros_arguments: what follows `program`, except parameters.
+    :param parameters: by name, as far as the user's parameter files do not give them.
+    :param parameter_sources: files and values in the order in which rcl reads them.
     :param publish: types of published topics, by full name.
     :param subscribe: types of subscribed topics, by full name.
     :param workers: cores of its workers, each with its host CPU.
@@ -78,13 +80,12 @@ class PlacedNode:
     cluster: int
     core: int
     host_cpu: int
-    argv: list[str]
     env: dict[str, str]
     cwd: Path
     program: tuple[str, ...]
     ros_arguments: tuple[str, ...]
     parameters: Mapping[str, Any]
-    param_files: tuple[Path, ...]
+    parameter_sources: tuple[Source, ...]
     publish: Mapping[str, str]
     subscribe: Mapping[str, str]
     workers: tuple[tuple[Core, int], ...]  # core and host CPU of each
@@ -96,6 +97,28 @@ class PlacedNode:
     def place(self) -> Core:
         """Cluster and core."""
         return Core(self.cluster, self.core)
+
+    @property
+    def file_stem(self) -> str:
+        """Unique name for files of the node; ROS 2 names have no dots."""
+        return self.name.strip("/").replace("/", ".")
+
+    @property
+    def argv(self) -> list[str]:
+        """Command line; files that `manycore run` generates have relative paths."""
+        return self.command(Path(PARAMETERS))
+
+    @property
+    def generated_files(self) -> list[GeneratedFile]:
+        """Parameter files that have to be written before the node starts."""
+        words = words_of(self.parameter_sources, self.file_stem)
+        return [word for word in words if isinstance(word, GeneratedFile)]
+
+    def command(self, directory: Path) -> list[str]:
+        """Return the command line with the directory that its generated files are in."""
+        words = words_of(self.parameter_sources, self.file_stem)
+        given = [str(directory / w.name) if isinstance(w, GeneratedFile) else w for w in words]
+        return [*self.program, *self.ros_arguments, *given]
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,11 @@ from rmw_manycore_py.mapfile.placing.crossings import bridge_placement
 from rmw_manycore_py.mapfile.placing.foreign import foreign_starts
 from rmw_manycore_py.mapfile.placing.imports import check_imports, notices_of_imports
 from rmw_manycore_py.mapfile.placing.launched import launch_rules
-from rmw_manycore_py.mapfile.placing.notices import elsewhere, refused_scheduling, unpublished
+from rmw_manycore_py.mapfile.placing.notices import (
+    elsewhere,
+    refused_scheduling,
+    unpublished,
+)
 from rmw_manycore_py.mapfile.placing.placement import (
     LaunchRules,
     PlacedNode,
@@ -178,7 +182,6 @@ def _place(
     workers: tuple[Core, ...],
     host_cpus: dict[Core, int],
 ) -> PlacedNode:
-    words = ros_arguments(start, start.parameters, start.param_files)
     publish, subscribe = _topics_of(mapfile, name, start)
     placed_workers = tuple((worker, host_cpus[worker]) for worker in workers)
     worker_cpus = ",".join(str(cpu) for _, cpu in placed_workers)
@@ -189,13 +192,12 @@ def _place(
         cluster=core.cluster,
         core=core.core,
         host_cpu=host_cpus[core],
-        argv=[*start.program.argv, *start.arguments, *words],
         env={**_environment(mapfile, name, core, start), **worker_environment},
         cwd=_directory(mapfile, start),
-        program=(*start.program.argv, *start.arguments),
-        ros_arguments=words,
+        program=(*start.program.prefix, *start.program.argv, *start.arguments),
+        ros_arguments=ros_arguments(start),
         parameters=start.parameters,
-        param_files=start.param_files,
+        parameter_sources=start.parameter_sources,
         publish=publish,
         subscribe=subscribe,
         workers=placed_workers,

@@ -3,25 +3,25 @@
 
 from __future__ import annotations
 
-import json
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.format.model import NodeSection
-from rmw_manycore_py.mapfile.launch_file import LaunchedNode, LaunchFile, ParameterSource
+from rmw_manycore_py.mapfile.launch_file import LaunchedNode, LaunchFile
 from rmw_manycore_py.mapfile.placing.launched import (
-    Launched,
     expected_command,
     expected_executable,
     find_launched,
     program_of,
-    values_on_a_command_line,
 )
-from rmw_manycore_py.mapfile.placing.parameter_files import parameters_in
+from rmw_manycore_py.mapfile.placing.parameters import (
+    Launched,
+    NodeName,
+    Source,
+    given_values,
+    sources_of,
+)
 from rmw_manycore_py.mapfile.programs import executables
 from rmw_manycore_py.mapfile.programs.executables import Program
 from rmw_manycore_py.ros.names import full_node_name
@@ -39,7 +39,7 @@ class NodeStart:
     ros_arguments: bool
     namespace: str | None
     parameters: dict[str, Any]
-    param_files: tuple[Path, ...]
+    parameter_sources: tuple[Source, ...]
     remappings: tuple[tuple[str, str], ...]
     arguments: tuple[str, ...]
     raw_ros_arguments: tuple[str, ...]
@@ -57,30 +57,31 @@ def node_start(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> NodeSt
     files = tuple(mapfile.file(file) for file in node.param_file)
     process = launched if isinstance(launched, LaunchedNode) else None
     is_plain = process is not None and process.executable is None
-    given = map(values_on_a_command_line, launched.parameters if launched else ())
-    sources = (*given, *files, node.parameters)
+    is_named = process is None or process.name is not None
+    takes_arguments = node.ros_arguments and not is_plain
+    sources: tuple[Source, ...] = ()
+    if takes_arguments:
+        sources = sources_of(launched, files, node.parameters, NodeName(full_name, is_named))
     return NodeStart(
         full_name=full_name,
         program=_program(mapfile, name, node, launched),
-        ros_arguments=node.ros_arguments and not is_plain,
+        ros_arguments=takes_arguments,
         namespace=namespace,
-        parameters=_merged(sources, full_name),
-        param_files=tuple(source for source in sources if isinstance(source, Path)),
+        parameters=given_values(sources, launched, full_name),
+        parameter_sources=sources,
         # In rcl the first matching rule takes effect.
         remappings=(*node.remappings.items(), *(launched.remappings if launched else ())),
         arguments=(*(process.arguments if process else ()), *node.arguments),
         raw_ros_arguments=process.ros_arguments if process else (),
         env={**(process.env if process else {}), **node.env},
-        is_named=process is None or process.name is not None,
+        is_named=is_named,
         directory=process.cwd if process else None,
         launched=launched,
     )
 
 
-def ros_arguments(
-    start: NodeStart, parameters: dict[str, Any], files: Sequence[Path | str]
-) -> tuple[str, ...]:
-    """Return the arguments from --ros-args on."""
+def ros_arguments(start: NodeStart) -> tuple[str, ...]:
+    """Return the arguments from --ros-args on, except parameters."""
     if not start.ros_arguments:
         return ()
     words = ["--ros-args"]
@@ -90,37 +91,7 @@ def ros_arguments(
         words += ["-r", f"__ns:={start.namespace}"]
     for source, target in start.remappings:
         words += ["-r", f"{source}:={target}"]
-    words += start.raw_ros_arguments
-    for file in files:
-        words += ["--params-file", str(file)]
-    for name, value in parameters.items():
-        words += ["-p", f"{name}:={parameter_text(value)}"]
-    return tuple(words)
-
-
-def parameter_text(value: Any) -> str:
-    """Format a value such that rcl parses the same type: strings stay strings."""
-    if isinstance(value, float) and not math.isfinite(value):
-        return ".nan" if math.isnan(value) else ".inf" if value > 0 else "-.inf"
-    if isinstance(value, (list, tuple)):
-        return f"[{', '.join(parameter_text(item) for item in value)}]"
-    return json.dumps(value, ensure_ascii=False)
-
-
-def _merged(sources: Sequence[ParameterSource], full_name: str) -> dict[str, Any]:
-    """Return the values that are given individually, after all files.
-
-    rcl ranks sections by the first occurrence of their node name, so a value given before a file
-    could override it; here a later file always takes precedence.
-    """
-    values: dict[str, Any] = {}
-    for source in sources:
-        if isinstance(source, Path):
-            overruled = parameters_in(source, full_name)
-            values = {name: value for name, value in values.items() if name not in overruled}
-        else:
-            values |= source
-    return values
+    return (*words, *start.raw_ros_arguments)
 
 
 def _names(name: str, node: NodeSection, launched: Launched | None) -> tuple[str | None, str]:

@@ -20,10 +20,11 @@ from rmw_manycore_py.ros import ament
 
 @dataclass(frozen=True)
 class Program:
-    """Command that starts a program, and its source if it is Python."""
+    """Command that starts a program; its source if it is Python; words to put before it."""
 
     argv: tuple[str, ...]
     source: Path | None = None
+    prefix: tuple[str, ...] = ()
 
 
 def find_script(file: Path) -> Program:

@@ -11,7 +11,6 @@ import pytest
 from rmw_manycore_py.errors import MapfileError, Problem, shorten
 from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_BYTES, MAX_DEPTH
 from rmw_manycore_py.mapfile.format.document import parse_yaml, read_yaml
-from rmw_manycore_py.mapfile.placing.parameter_files import parameters_in
 
 pytestmark = pytest.mark.unit
 
@@ -73,13 +72,6 @@ def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
     file.write_bytes(b"a: \xff\n")
     with pytest.raises(MapfileError, match="a readable text file, found bytes that are not UTF-8"):
         read_yaml(file)
-
-
-def test_parameter_files_have_the_same_bounds(tmp_path: Path) -> None:
-    file = tmp_path / "file.yaml"
-    file.write_text("/talker: {ros__parameters: " + "{a: " * 1000)
-    with pytest.raises(MapfileError, match="at most 50 levels of nesting"):
-        parameters_in(file, "/talker")
 
 
 def test_a_problem_is_one_line() -> None:

@@ -12,6 +12,7 @@ import pytest
 
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.launch_file import (
+    ExpandedFile,
     LaunchedNode,
     LaunchFile,
     read_launch_file,
@@ -239,7 +240,7 @@ def test_parameter_files_keep_their_order_and_may_hold_substitutions(
     )
     assert launch.nodes[0].parameters == (
         plain,
-        {"map": "/maps/tiles", "deep.n": 3},
+        ExpandedFile(expanded, "/**: {ros__parameters: {map: /maps/tiles, deep: {n: 3}}}\n"),
         {"list": [1, 2]},
         {"group.inner": "x"},
     )

@@ -1,0 +1,69 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What nodes of a launch file get under `manycore run`: parameters, CPU, scheduling."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from forked import forked_manycore
+from support import IS_MANYCORE, Program
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore run is about rmw_manycore"),
+]
+
+CPUS, NICE = sorted(os.sched_getaffinity(0)), os.nice(0)
+PROBE = """\
+#!{python}
+import os
+import rclpy
+rclpy.init()
+node = rclpy.create_node("own")
+values = {{name: one.value for name, one in sorted(node._parameter_overrides.items())}}
+print("has", values, flush=True)
+policies = {{os.SCHED_OTHER: "other", os.SCHED_BATCH: "batch"}}
+policy = policies[os.sched_getscheduler(0)]
+print("on", *os.sched_getaffinity(0), policy, "nice", os.nice(0), flush=True)
+"""
+Run = Callable[[str, str], Program]
+
+
+@pytest.fixture
+def run(start, tmp_path: Path, platform: str) -> Run:
+    """Return the run of a launch file whose nodes print what they get."""
+    program = tmp_path / "prefix/lib/demo/probe"
+    index = tmp_path / "prefix/share/ament_index/resource_index/packages"
+    for directory in (program.parent, index):
+        directory.mkdir(parents=True)
+    (index / "demo").touch()
+    program.write_text(PROBE.format(python=sys.executable))
+    program.chmod(0o755)
+
+    def run_nodes(nodes: str, mapfile: str) -> Program:
+        text = nodes.replace("<node", '<node pkg="demo" exec="probe"')
+        (tmp_path / "demo.launch.xml").write_text(f"<launch>{text}</launch>")
+        (tmp_path / "map.yaml").write_text(f"launch_path: demo.launch.xml\nnodes:\n{mapfile}")
+        command = forked_manycore("run", tmp_path / "map.yaml")
+        return start(command, AMENT_PREFIX_PATH=str(tmp_path / "prefix"))
+
+    return run_nodes
+
+
+def test_a_node_gets_the_parameters_that_the_placement_shows(run: Run, tmp_path: Path) -> None:
+    file = tmp_path / "p.yaml"
+    file.write_text(
+        "/**: {ros__parameters: {a: 1, b: 1, c: 1, d: 1}}\n"
+        "/ns/*: {ros__parameters: {b: $(eval '1 + 1'), c: 2, d: 2}}\n"
+    )
+    running = run(
+        f'<node name="one" namespace="ns"><param from="{file}" allow_substs="true"/>'
+        '<param name="c" value="3"/></node>',
+        "  /ns/one: {cluster: 1, parameters: {d: 4}}\n",
+    )
+    running.wait_for(r"has \{'a': 1, 'b': 2, 'c': 3, 'd': 4\}$")
+    assert running.wait() == 0

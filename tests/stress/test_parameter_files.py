@@ -1,0 +1,55 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Many generated parameter files and command lines, against nodes that are given the same."""
+
+from __future__ import annotations
+
+import ast
+import os
+from pathlib import Path
+
+import pytest
+import rclpy
+from parameter_files import (
+    Generator,
+    compare_command_lines,
+    compare_files,
+    print_overrides,
+    read_here,
+    shown,
+)
+from support import IS_MANYCORE, peer_command
+
+pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="manycore run is about rmw_manycore")
+
+FILES = int(os.environ.get("MANYCORE_TEST_PARAMETER_FILES", "10000"))
+PROCESSES = int(os.environ.get("MANYCORE_TEST_PARAMETER_NODES", "200"))
+
+
+@pytest.fixture
+def context(platform):
+    rclpy.init()
+    yield rclpy.get_default_context()
+    rclpy.shutdown()
+
+
+def test_files_are_read_as_by_a_node(context, tmp_path: Path) -> None:
+    assert compare_files(context, tmp_path, range(FILES))[1] == ""
+
+
+def test_command_lines_give_what_launch_gives(context, tmp_path: Path) -> None:
+    assert compare_command_lines(context, tmp_path, range(FILES)) == ""
+
+
+def test_files_are_read_as_by_nodes_that_are_started_with_them(start, tmp_path: Path) -> None:
+    file = tmp_path / "file.yaml"
+    for number in range(PROCESSES):
+        file.write_bytes(Generator(number).file())
+        found = read_here(file, "/ns/probe")
+        words = ("--ros-args", "--params-file", str(file))
+        node = start(peer_command(print_overrides, *words))
+        if isinstance(found, dict):
+            printed = node.wait_for(r"^(\[.*\])$")
+            assert ast.literal_eval(printed[1]) == shown(found), f"file {number}"
+            assert node.wait() == 0
+        else:
+            assert node.wait() != 0, f"file {number} is refused by us alone: {found}"
