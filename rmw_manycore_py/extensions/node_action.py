@@ -26,6 +26,7 @@ from launch_ros.actions.node import Node, NodeActionExtension
 from rmw_manycore_py.errors import ManycoreError, MapfileError
 from rmw_manycore_py.extensions.foreign_launch import MAPFILE_VARIABLE, ForeignLaunch
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode
+from rmw_manycore_py.mapfile.placing.prefix import placed_again
 from rmw_manycore_py.ros.names import full_node_name
 
 _RESTART_PAUSE_S = 1.0  # same as `manycore run`
@@ -56,7 +57,7 @@ class ManycoreNodeAction(NodeActionExtension):  # type: ignore[misc]
             if placed is None:
                 full_name = full_node_name(namespace, name or executable)
                 _logger().warning(f"{full_name} is not in the mapfile: it is not pinned")
-                _start_with(node_action, [], lambda given: {**given, **launch.elsewhere(given)})
+                _start_with(node_action, None, lambda given: {**given, **launch.elsewhere(given)})
             else:
                 _place(launch, node_action, placed)
         return [], ros_specific_arguments
@@ -78,7 +79,7 @@ def _place(launch: ForeignLaunch, action: Node, placed: PlacedNode) -> None:
     """Pin the action's process to its host CPU, and set the environment of its core."""
     _start_with(
         action,
-        _pinned([placed.host_cpu]),
+        placed.host_cpu,
         lambda given: launch.environment(placed, given),
     )
     _logger().info(
@@ -88,22 +89,33 @@ def _place(launch: ForeignLaunch, action: Node, placed: PlacedNode) -> None:
 
 def _start_with(
     action: Node,
-    prefix: Sequence[str],
+    host_cpu: int | None,
     environment_of: Callable[[Mapping[str, str]], Mapping[str, str]],
 ) -> None:
-    """Start the action's process with a prefix, in an environment made from that of launch."""
+    """Start the action's process on a host CPU, in an environment made from that of launch."""
     description = action.process_description
     prepare = description.prepare
 
     def prepare_and_change(context: LaunchContext, action: Any) -> None:
         prepare(context, action)
-        # Goes before any launch prefix, so that debuggers attach to the node itself.
-        description.final_cmd[:0] = prefix
+        if host_cpu is not None:
+            _pin(description, host_cpu)
         environment = environment_of(dict(description.final_env))
         description.final_env.clear()
         description.final_env.update(environment)
 
     description.prepare = prepare_and_change
+
+
+def _pin(description: Any, host_cpu: int) -> None:
+    """Pin a process before its launch prefix, so that a debugger starts the node itself.
+
+    A prefix that pins is followed by another pin: the mapfile decides.
+    """
+    words = description.final_cmd
+    count = len(words) - len(description.cmd)
+    words[count:count] = placed_again(words[:count], host_cpu, None)
+    words[:0] = _pinned([host_cpu])
 
 
 def _pinned(host_cpus: Sequence[int]) -> list[str]:

@@ -116,7 +116,7 @@ def test_nodes_of_a_launch_file_run_where_the_mapfile_says(launch, platform) -> 
         "  absent: {cluster: 1}\n"
     )
     nodes = (
-        'talker(name="one", respawn=True, prefix="env -u NOTHING"), '
+        f'talker(name="one", respawn=True, prefix="taskset -c {CPUS[0]}"), '
         'talker(name="two", namespace="robot", additional_env={"DEMO": "launch file"}), '
         'Node(package="rmw_manycore", executable="listener", name="two"), '
         'talker(name="two", namespace="other"), talker(name="three"), '

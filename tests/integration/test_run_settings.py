@@ -67,3 +67,25 @@ def test_a_node_gets_the_parameters_that_the_placement_shows(run: Run, tmp_path:
     )
     running.wait_for(r"has \{'a': 1, 'b': 2, 'c': 3, 'd': 4\}$")
     assert running.wait() == 0
+
+
+def test_a_prefix_that_pins_does_not_move_a_node_of_the_mapfile(run: Run) -> None:
+    elsewhere = f"taskset --cpu-list {CPUS[-1]}"
+    running = run(
+        f'<node name="one" launch-prefix="{elsewhere}"/>'
+        '<node name="two" launch-prefix="chrt --batch 0"/>'
+        '<node name="three" launch-prefix="chrt --batch 0 nice -n 5"/>',
+        f"  one: {{cluster: 1, host_cpu: {CPUS[0]}}}\n"
+        f"  two: {{cluster: 1, host_cpu: {CPUS[0]}, scheduling: {{policy: other}}}}\n"
+        f"  three: {{cluster: 1, host_cpu: {CPUS[0]}}}\n",
+    )
+    running.wait_for(rf"overrules the prefix '{elsewhere}' of 'one': host CPU {CPUS[0]}$")
+    running.wait_for(rf"of 'two': host CPU {CPUS[0]}, scheduling other$")
+    assert running.wait() == 0
+    printed = [line.partition(" | ")[::2] for line in running.lines]
+    places = {name.strip(): text for name, text in printed if text.startswith("on ")}
+    assert places == {
+        "one": f"on {CPUS[0]} other nice {NICE}",
+        "two": f"on {CPUS[0]} other nice {NICE}",
+        "three": f"on {CPUS[0]} batch nice {min(NICE + 5, 19)}",
+    }

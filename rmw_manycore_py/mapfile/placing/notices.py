@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import difflib
+import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode
+from rmw_manycore_py.mapfile.placing.prefix import placed_again
 from rmw_manycore_py.mapfile.programs.source import scan
 from rmw_manycore_py.ros.domain import is_elsewhere
 from rmw_manycore_py.ros.names import resolve_topic
@@ -43,6 +45,22 @@ def refused_scheduling(nodes: Sequence[PlacedNode]) -> Iterator[str]:
     for node in nodes:
         if node.scheduling is not None and (reason := refusal(node.scheduling)):
             yield f"'{node.name}' cannot run here: {reason}"
+
+
+def overruled_prefixes(
+    starts: Mapping[str, NodeStart], nodes: Sequence[PlacedNode]
+) -> Iterator[str]:
+    """Yield nodes with a launch prefix that says otherwise than the mapfile where they run."""
+    for node in nodes:
+        start = starts[node.name]
+        if placed_again(start.program.prefix, node.host_cpu, node.scheduling):
+            launched = start.launched
+            assert launched is not None
+            yield (
+                f"{launched.file}:{launched.line}: the mapfile overrules the prefix "
+                f"'{shlex.join(start.program.prefix)}' of '{node.name}': host CPU {node.host_cpu}"
+                + (f", scheduling {node.scheduling}" if node.scheduling else "")
+            )
 
 
 def elsewhere(platform: str, nodes: Sequence[PlacedNode]) -> Iterator[str]:

@@ -19,6 +19,7 @@ from rmw_manycore_py.mapfile.placing.imports import check_imports, notices_of_im
 from rmw_manycore_py.mapfile.placing.launched import launch_rules
 from rmw_manycore_py.mapfile.placing.notices import (
     elsewhere,
+    overruled_prefixes,
     refused_scheduling,
     unpublished,
 )
@@ -27,6 +28,7 @@ from rmw_manycore_py.mapfile.placing.placement import (
     PlacedNode,
     Placement,
 )
+from rmw_manycore_py.mapfile.placing.prefix import placed_again
 from rmw_manycore_py.mapfile.placing.sessions import check_sessions
 from rmw_manycore_py.mapfile.placing.start import NodeStart, node_start, ros_arguments
 from rmw_manycore_py.mapfile.placing.topics import (
@@ -119,6 +121,7 @@ def _placement(
             *(*of_rules, *of_imports),
             *unpublished(mapfile, starts, nodes),
             *refused_scheduling(nodes),
+            *overruled_prefixes(starts, nodes),
             *elsewhere(platform_name(mapfile), nodes),
         ),
     )
@@ -194,7 +197,7 @@ def _place(
         host_cpu=host_cpus[core],
         env={**_environment(mapfile, name, core, start), **worker_environment},
         cwd=_directory(mapfile, start),
-        program=(*start.program.prefix, *start.program.argv, *start.arguments),
+        program=_program(mapfile, name, start, host_cpus[core]),
         ros_arguments=ros_arguments(start),
         parameters=start.parameters,
         parameter_sources=start.parameter_sources,
@@ -204,6 +207,14 @@ def _place(
         terminal=mapfile.sections.nodes[name].terminal,
         scheduling=_scheduling(mapfile.sections.nodes[name]),
     )
+
+
+def _program(mapfile: Mapfile, name: str, start: NodeStart, host_cpu: int) -> tuple[str, ...]:
+    """Return the command line without ROS arguments; its prefix does not undo the placement."""
+    prefix = start.program.prefix
+    scheduling = _scheduling(mapfile.sections.nodes[name])
+    again = placed_again(prefix, host_cpu, scheduling)
+    return (*prefix, *again, *start.program.argv, *start.arguments)
 
 
 def _scheduling(node: NodeSection) -> Scheduling | None:
