@@ -29,7 +29,8 @@ def placed(tmp_path: Path) -> Check:
     def check_node(node: str, launch: str = "", file: str = "") -> PlacedNode:
         (tmp_path / "demo.launch.py").write_text(
             "from launch import LaunchDescription\n"
-            "from launch_ros.actions import Node, SetParameter\n"
+            "from launch_ros.actions import ComposableNodeContainer, Node, SetParameter\n"
+            "from launch_ros.descriptions import ComposableNode\n"
             "from launch_ros.parameter_descriptions import ParameterFile\n"
             "def node(parameters, **more):\n"
             "    return Node(executable='sh', parameters=parameters, **more)\n"
@@ -120,6 +121,18 @@ def test_parameters_of_a_node_that_names_itself_are_for_any_name(placed: Check) 
     launch = "node([FILE])"
     node = placed("sh: {cluster: 1, parameters: {x: 3}}", launch, file)
     assert values_for(read_all(node.parameter_sources), "/own_name") == {"x": 3}
+
+
+def test_components_get_what_rcl_reads_for_them(placed: Check) -> None:
+    file = "/**/lens: {ros__parameters: {x: -.5, y: $(eval '1 + 1'), none: []}}\n"
+    lens = (
+        "ComposableNode(package='p', plugin='p::Lens', name='lens', namespace='/left', "
+        "parameters=[{'x': 1}, ParameterFile(FILE, allow_substs=True)])"
+    )
+    box = f"name='box', namespace='', executable='sh', composable_node_descriptions=[{lens}]"
+    node = placed("box: {cluster: 1}", f"ComposableNodeContainer({box})", file)
+    (component,) = node.rules.components
+    assert component.parameters == {"x": -0.5, "y": 2}
 
 
 def test_names_and_sizes_that_no_option_can_have_are_in_a_file(placed: Check) -> None:
