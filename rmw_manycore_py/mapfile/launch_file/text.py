@@ -80,7 +80,9 @@ class _Reader:
         parts: Parts = []
         plain = ""
         while self._at < len(self._text) and not ends(self._text[self._at]):
-            if self._text.startswith("$(", self._at):
+            # In launch any backslash before a dollar escapes it, even one that is escaped itself.
+            is_escaped = self._text[self._at - 1 : self._at] == "\\"
+            if self._text.startswith("$(", self._at) and not is_escaped:
                 parts += [s.TextSubstitution(text=plain)] if plain else []
                 plain = ""
                 parts.append(self._substitution())

@@ -18,6 +18,9 @@ from rmw_manycore_py.mapfile.launch_file import (
     read_launch_file,
     substitutions,
 )
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
+from rmw_manycore_py.mapfile.launch_file.substitutions import perform
+from rmw_manycore_py.mapfile.launch_file.text import parse
 
 pytestmark = pytest.mark.unit
 
@@ -244,6 +247,22 @@ def test_parameter_files_keep_their_order_and_may_hold_substitutions(
         {"list": [1, 2]},
         {"group.inner": "x"},
     )
+
+
+@pytest.mark.parametrize(
+    ("written", "read_as"),
+    [
+        (r"a\nb", "anb"),
+        (r"\$(var x)", "$(var x)"),
+        (r"\\$(var x)", r"\$(var x)"),
+        (r"\\ $(var x)", r"\ 1"),
+        ("end\\", "end\\"),
+        ("\\\n", "\\\n"),
+    ],
+)
+def test_backslashes_are_those_of_launch(written: str, read_as: str) -> None:
+    context = LaunchContext(arguments={"x": "1"})
+    assert perform(context, parse(written)) == read_as
 
 
 def test_a_substitution_stays_one_argument(read: Read) -> None:
