@@ -11,14 +11,11 @@
 //   repair                by the owner after one that was killed, of all these endpoints
 //   close_subscription    `changes` subscriptions that have taken nothing
 //   close_publisher       `changes` publishers, each leaving a message that is not taken
-//   sweep                 freeing what these left, after newer messages have displaced theirs
 //   close_deep            a publisher whose last 1,000 messages N subscriptions have not taken
 //   close_server          a server with 1,000 replies to one of N clients
 //   free_large            a publisher whose topic DSM has grown to more than 16 MiB
 //   create_queue          a subscription of depth 65,535
 //   free_queue            closing it, and freeing its queue
-//   sweep_deepest         looking at 65,535 untaken messages of a closed publisher,
-//                         and at as many newer ones of another publisher
 //   reap                  a killed process with `changes` endpoints of each kind, and such a
 //   publisher
 // A thread on CPU `cpu` watches the word that is odd while the lock is held, and reads the CPU
@@ -311,13 +308,6 @@ void measure_changes(Measurement & on, Endpoints & endpoints, size_t count, size
   on.report("close_subscription");
   endpoints.publishers.resize(endpoints.publishers.size() - changes);
   on.report("close_publisher");
-  endpoints.publish_all();
-  EndpointSpec other = on.spec;
-  other.topic = "/other";
-  for (size_t i = 0; i < changes; ++i) {
-    on.process.create_publisher(other);
-  }
-  on.report("sweep");
 }
 
 void measure_deep_histories(Measurement & on, size_t readers) {
@@ -341,27 +331,7 @@ void measure_memory(Measurement & on) {
   auto subscription = on.process.create_subscription(deepest);
   on.report("create_queue");
   subscription.reset();
-  deepest.qos.depth = 1;
-  on.process.create_publisher(deepest);  // sweeps
   on.report("free_queue");
-}
-
-/// The deepest history of a closed publisher, and another as deep that displaces it at last.
-void measure_deepest_history(Measurement & on) {
-  EndpointSpec spec = on.spec;
-  spec.topic = "/history";
-  spec.qos.depth = UINT16_MAX;
-  const auto subscription = on.process.create_subscription(spec);
-  auto former = on.process.create_publisher(spec);
-  const auto newer = on.process.create_publisher(spec);
-  for (Publisher * const publisher : {former.get(), newer.get()}) {
-    for (uint32_t i = 0; i < UINT16_MAX; ++i) {
-      publish(*publisher);
-    }
-  }
-  on.holds.take_holds_ns();
-  former.reset();
-  on.report("sweep_deepest");
 }
 
 void run(const bench::Arguments & arguments) {
@@ -379,7 +349,6 @@ void run(const bench::Arguments & arguments) {
   measure_changes(on, endpoints, count, changes);
   measure_deep_histories(on, count);
   measure_memory(on);
-  measure_deepest_history(on);
   victim.join_platform();
   {
     const Standstill receive_thread(registry);

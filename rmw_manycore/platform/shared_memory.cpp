@@ -170,8 +170,8 @@ void SharedMemory::populate(uint64_t offset, uint64_t length) const noexcept {
 void SharedMemory::release(uint64_t offset, uint64_t length) const noexcept {
   const uint64_t first = page_ceil(offset);
   const uint64_t end = page_floor(offset + length);
-  if (end > first) {
-    madvise(data_ + first, end - first, MADV_REMOVE);
+  for (uint64_t step = first; step < end; step += step_bytes) {
+    madvise(data_ + step, std::min(step_bytes, end - step), MADV_REMOVE);
   }
 }
 

@@ -56,26 +56,24 @@ uint32_t new_endpoint(
   entry.incompatible_policy.store(0);
   entry.asserted_ns.store(ManualLiveliness::never);
   entry.dead_publishers.store(0);
-  entry.spare.ref.store(0);
   return taken;
 }
 
 uint32_t enter_graph(
   Registry & registry, const Membership & membership, const EndpointSpec & spec, EndpointKind kind,
-  uint32_t process) {
+  uint32_t process, BlockInHand * hand) {
   const TopicEntry * const configured = registry.find_topic(spec.topic);  // entries never change
   const Registry::Lock lock(registry);
-  membership.require();  // else the spare block may be that of the next process with this slot
+  membership.require();
   const uint32_t taken = new_endpoint(registry, spec, kind, process);
   EndpointEntry & entry = registry.endpoints()[taken];
   entry.topic_dsm_size = configured == nullptr ? 0 : configured->topic_dsm_size;
   entry.transfer = transfer_of(configured, spec, kind);
   try {
-    SpareBlock & spare = registry.processes()[process].spare;
     const void * const block =
       kind == EndpointKind::publisher
         ? static_cast<void *>(&TopicDsmWriter::create(registry, taken))
-        : static_cast<void *>(&subscription_block::create(registry, taken, spare));
+        : static_cast<void *>(&subscription_block::create(registry, taken, hand));
     entry.block = registry.clusters().at(entry.cluster).ref_of(block);
   } catch (...) {
     registry.endpoints().give_back(taken);
@@ -83,7 +81,7 @@ uint32_t enter_graph(
   }
   entry.order = ++registry.header().last_order;
   registry.endpoints().publish(taken);
-  registry.link_endpoint(taken);
+  registry.link_endpoint(taken, Registry::Chain::live);
   return taken;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "transport/layout/endpoint.hpp"
+#include "transport/registry/block_in_hand.hpp"
 #include "transport/registry/membership.hpp"
 #include "transport/registry/registry.hpp"
 
@@ -14,11 +15,11 @@ uint32_t new_endpoint(
   Registry & registry, const EndpointSpec & spec, EndpointKind kind, uint32_t process);
 
 /// Creates an endpoint of a process with its block, live and unmatched: if the process dies before
-/// it is matched, or halfway, the reaper undoes its matches. A large queue has its block from the
-/// spare block of the process. Takes the registry lock. Throws as new_endpoint(), and
+/// it is matched, or halfway, the reaper undoes its matches. `hand` has the block of a large queue,
+/// else nullptr. Takes the registry lock. Throws as new_endpoint(), and
 /// Error{system} if the process is no member any more.
 uint32_t enter_graph(
   Registry & registry, const Membership & membership, const EndpointSpec & spec, EndpointKind kind,
-  uint32_t process);
+  uint32_t process, BlockInHand * hand);
 
 }  // namespace manycore

@@ -13,15 +13,13 @@
 #include "transport/lifecycle/receive_thread_watcher.hpp"
 #include "transport/lifecycle/slot_and_line.hpp"
 #include "transport/lifecycle/trace_control.hpp"
-#include "transport/matching/closing.hpp"
 #include "transport/matching/connecting.hpp"
 #include "transport/matching/leaving.hpp"
 #include "transport/matching/matching.hpp"
-#include "transport/matching/spare_blocks.hpp"
-#include "transport/matching/sweeping.hpp"
 #include "transport/new_endpoint.hpp"
 #include "transport/publisher/publisher_impl.hpp"
 #include "transport/qos/qos_ranges.hpp"
+#include "transport/registry/block_in_hand.hpp"
 #include "transport/registry/membership.hpp"
 #include "transport/registry/smem_charge.hpp"
 #include "transport/subscription/subscription_block.hpp"
@@ -66,7 +64,6 @@ struct Process::Impl {
   template<typename Endpoint>
   std::unique_ptr<Endpoint> handle_of(uint32_t endpoint);
   void attach(uint32_t taken);
-  void sweep_at_parting() noexcept;
   void leave();
   void count_contexts(int change) noexcept;
 
@@ -79,7 +76,6 @@ struct Process::Impl {
   std::unique_ptr<Waiters> waiters;
   std::unique_ptr<Graph> graph;
   std::unique_ptr<ReceiveThreadWatcher> watcher;
-  std::mutex spare_mutex;  ///< held while the process makes its spare block, and uses it
   std::mutex contexts_mutex;
   int live_contexts = 0;
 };
@@ -144,7 +140,6 @@ uint32_t Process::Impl::take_process_slot(std::unique_ptr<LifeThread> & life) {
   std::memset(entry.label, 0, sizeof entry.label);
   std::strncpy(entry.label, placement.label.c_str(), sizeof entry.label - 1);
   entry.wake.reset();
-  entry.spare.ref.store(0);
   registry->header().graph_watchers.remove(taken);
   attach(taken);
   processes.publish(taken);
@@ -165,43 +160,26 @@ Process::Impl::~Impl() {
   }
 }
 
-/// Errors while sweeping what other processes left do not keep this process from leaving.
-void Process::Impl::sweep_at_parting() noexcept {
-  try {
-    sweeping::sweep_a_little(*registry, placement.cluster, registry->parting_wait_ns());
-  } catch (const std::exception &) {
-    registry->clusters().at(placement.cluster).wake_reaper();
-  }
-}
-
 /// The join lock is the user's, not the platform's: it is taken last, and by the last process only,
 /// so that no join waits for this one. The registry lock's owner may be stopped.
 void Process::Impl::leave() {
   // Close endpoints whose destructors could not get the lock.
-  closing::EndpointsOfProcess endpoints(*registry, slot, false);
-  for (bool closed = false; !closed;) {
-    const Registry::Lock lock(*registry, registry->parting_wait_ns());
-    Turn turn;
-    closed = endpoints.close_some(turn);
-    if (closed) {
-      endpoints.require_all_closed();
-    }
+  const Cluster & cluster = registry->clusters().at(placement.cluster);
+  try {
+    close_endpoints_of(*registry, slot, false, [] { return true; });
+  } catch (const ClusterUnmappable &) {
+    cluster.wake_reaper();  // it has descriptors of its own
+    throw;
   }
-  sweep_at_parting();
-  NodesOfProcess nodes(*registry, slot);
-  for (bool are_removed = false; !are_removed;) {
-    const Registry::Lock lock(*registry, registry->parting_wait_ns());
-    Turn turn;
-    are_removed = nodes.remove_some(turn) &&
-                  spare_blocks::free_some(*registry, registry->processes()[slot].spare, turn);
-  }
-  registry->graph_changed();  // the lock may take a while
+  BlockInHand(*registry, registry->parting_wait_ns());  // no other process empties the hand later
+  registry->graph_changed();                            // the lock may take a while
   {
     const Registry::Lock lock(*registry, registry->parting_wait_ns());
     registry->tracer().note(TraceKind::leave);
     registry->tracer().unfollow();
+    remove_nodes_of(*registry, slot);
     if (registry->header().closing_count != 0) {
-      registry->clusters().at(placement.cluster).wake_reaper();  // the sweep was a brief one
+      cluster.wake_reaper();
     }
     leave_registry(*registry, slot);
   }
@@ -225,34 +203,23 @@ void Process::Impl::count_contexts(int change) noexcept {
 /// after it has handed over its records.
 void Process::Impl::require_movers() { ensure_receive_thread(*registry, placement.cluster); }
 
-/// The block of a large queue is the spare block of the process until the endpoint has it, one at a
-/// time.
 uint32_t Process::Impl::publish_endpoint(const EndpointSpec & spec, EndpointKind kind) {
   if (transfer_of(registry->find_topic(spec.topic), spec, kind) != Transfer::dsm) {
     require_movers();
   }
-  const uint64_t bytes =
-    kind == EndpointKind::subscription ? subscription_block::bytes_for(spec.qos) : 0;
   registry->clusters().at(placement.cluster).back_ahead();
-  if (bytes <= spare_blocks::max_bytes_at_once) {
-    return enter_graph(*registry, *membership, spec, kind, slot);
+  const NeededBlock needed = subscription_block::block_for(spec.qos, placement.cluster);
+  std::optional<BlockInHand> hand;
+  if (kind == EndpointKind::subscription && needed.bytes > BlockInHand::max_bytes_at_once) {
+    hand.emplace(*registry);
+    hand->make(*membership, needed);
   }
-  const std::lock_guard<std::mutex> guard(spare_mutex);
-  SpareBlock & spare = registry->processes()[slot].spare;
-  spare_blocks::make(
-    *registry, *membership, spare, {SpareUse::queue, placement.cluster, bytes, bytes});
-  try {
-    return enter_graph(*registry, *membership, spec, kind, slot);
-  } catch (...) {
-    spare_blocks::free_all(*registry, *membership, spare);
-    throw;
-  }
+  return enter_graph(*registry, *membership, spec, kind, slot, hand ? &*hand : nullptr);
 }
 
 uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kind) {
   check_qos_ranges(spec);
   membership->require();
-  sweeping::sweep_a_little(*registry, placement.cluster);
   matching::require_reach(*registry, spec.topic, kind);
   const uint32_t taken = publish_endpoint(spec, kind);
   try {

@@ -49,8 +49,6 @@ struct Fixture {
       publish(*driver, ++published, size_bytes);
     }
   }
-  /// Each graph change sweeps what could not be freed before.
-  void sweep() { process->create_publisher(on_topic("/another", keep_last(1))); }
 
   TestPlatform platform;
   Configurator configurator{platform.name(), profile_of(32 * mebibyte), {}};

@@ -14,12 +14,12 @@ using namespace manycore;
 
 constexpr const char * topic = "/x";
 constexpr const char * crowded_topic = "/crowded";
-constexpr size_t crowd = 100;          // more matches than one turn undoes
+constexpr size_t crowd = 100;
 constexpr size_t large_bytes = 5'000;  // requires the topic DSM to grow
 constexpr const char * sized_topic = "/sized";
 constexpr const char * moved_topic = "/moved";
-constexpr uint32_t sized_bytes = 300'000;  // freed in several pieces
-constexpr uint32_t sized_depth = 10'000;   // a queue of 128 KiB, likewise
+constexpr uint32_t sized_bytes = 300'000;
+constexpr uint32_t sized_depth = 10'000;  // a queue of 128 KiB, likewise
 
 inline std::shared_ptr<Process> join(const std::string & platform) {
   Placement placement;
@@ -72,8 +72,7 @@ inline const Role moves("moves", [](Lines &, const Arguments & arguments) {
   finish_steps();
 });
 
-/// A topic DSM and a queue that are backed without the registry lock, and given back piece by
-/// piece.
+/// A topic DSM and a queue that are backed, and given back, without the registry lock.
 inline const Role sizes("sizes", [](Lines &, const Arguments & arguments) {
   const auto process = join(arguments.at(0));
   begin_steps();
@@ -108,7 +107,7 @@ inline const Role closes("closes", [](Lines &, const Arguments & arguments) {
   finish_steps();
 });
 
-/// Endpoints whose matches are undone in several turns.
+/// Endpoints with many matches.
 inline const Role closes_many("closes_many", [](Lines &, const Arguments & arguments) {
   const auto process = join(arguments.at(0));
   auto publisher = process->create_publisher(on_topic(crowded_topic, transient_local(2)));
@@ -128,19 +127,18 @@ inline const Role reaps("reaps", [](Lines &, const Arguments & arguments) {
   finish_steps();
 });
 
-/// A message that 100 subscriptions want until a newer one arrives: their readers are revoked in
-/// several turns.
+/// Messages of two publishers, the older of which 100 subscriptions keep no more when the other one
+/// leaves.
 inline const Role sweeps_many("sweeps_many", [](Lines &, const Arguments & arguments) {
   const auto process = join(arguments.at(0));
   const EndpointSpec spec = on_topic(crowded_topic, transient_local(1));
-  const auto newer = process->create_publisher(spec);
+  auto newer = process->create_publisher(spec);
   auto older = process->create_publisher(spec);
   publish(*older, 1, sizeof(Payload), 2);
   older.reset();
   publish(*newer, 2, sizeof(Payload), 2);
-  Registry registry(PlatformPaths::of(arguments.at(0)));
   begin_steps();
-  sweeping::sweep_all(registry);
+  newer.reset();
   finish_steps();
 });
 

@@ -56,7 +56,7 @@ const Role half_reaper("half_reaper", [](Lines & test, const Arguments & argumen
   const Registry::Lock lock(registry);
   EndpointEntry & entry = registry.endpoints()[slot];
   entry.slot.state.store(SlotState::closing);
-  registry.unlink_endpoint(slot);
+  registry.unlink_endpoint(slot, Registry::Chain::live);
   registry.header().closing.add(slot);
   ++registry.header().closing_count;
   auto & header = *registry.clusters().find<SubscriptionHeader>(entry.block);
@@ -320,7 +320,7 @@ TEST_CASE("a process taken for dead while it joined: what it created before its 
     endpoint =
       new_endpoint(registry, on_topic("/x", keep_last(1)), EndpointKind::publisher, process);
     registry.endpoints().publish(endpoint);
-    registry.link_endpoint(endpoint);
+    registry.link_endpoint(endpoint, Registry::Chain::live);
   }
   reaper.join();
   CHECK(f.inspection.live_processes() == 1);

@@ -9,6 +9,7 @@
 
 #include <future>
 #include <map>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -25,7 +26,7 @@ struct Fixture {
   TestPlatform platform;
   Configurator configurator{platform.name(), host_profile(), {{"/fixed", 1, 4000, 0}}};
   std::shared_ptr<Process> process = platform.join();
-  Standstill receive_thread{platform, 1};
+  std::optional<Standstill> receive_thread{std::in_place, platform, 1};
 };
 
 constexpr uint64_t messages_each = 5000;
@@ -190,6 +191,8 @@ TEST_CASE("subscriptions and publishers are created and closed under load") {
     ends = true;
     CHECK_NOTHROW(steady.get());
     Inspection inspection(f.platform);
+    f.receive_thread.reset();
+    inspection.wait_until_swept();
     CHECK(inspection.live_endpoints() == 0);
   }
 }

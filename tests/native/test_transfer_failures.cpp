@@ -12,7 +12,6 @@
 #include "stepped_child.hpp"
 #include "transfer_of_test.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
-#include "transport/matching/turn.hpp"
 
 using namespace manycore;
 using transfer_of_test::by;
@@ -159,11 +158,6 @@ TEST_CASE("a mover killed with the newest messages in hand: its successor gives 
   for (const Transfer kind : {Transfer::message, Transfer::session}) {
     CAPTURE(static_cast<int>(kind));
     Fixture f(by(kind));
-    // The successor comes to the publisher's slot in a later turn.
-    std::vector<std::unique_ptr<Subscription>> others;
-    while (others.size() < Turn::steps) {
-      others.push_back(f.process->create_subscription(on_topic("/other", keep_last(1))));
-    }
     f.publisher = f.process->create_publisher(on_topic("/x", keep_last(1000)));
     f.publish_numbers(1, 10);
     f.expect(1, 10);

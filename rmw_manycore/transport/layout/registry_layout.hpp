@@ -7,7 +7,6 @@
 #include "transport/layout/endpoint.hpp"
 #include "transport/layout/segment_layout.hpp"
 #include "transport/layout/slot_set.hpp"
-#include "transport/layout/spare_block.hpp"
 #include "transport/layout/trace_layout.hpp"
 #include "transport/layout/transfer_layout.hpp"
 #include "transport/layout/wake_words.hpp"
@@ -75,9 +74,8 @@ struct ProcessEntry {
   /// Its contexts have ended, or its death is recorded: its end is not recorded as a death.
   std::atomic<uint32_t> is_ending;
   WakeWords wake;
-  SpareBlock spare;  ///< for an endpoint to come
 };
-static_assert(sizeof(ProcessEntry) == 1344 && offsetof(ProcessEntry, trace) == 28);
+static_assert(sizeof(ProcessEntry) == 1280 && offsetof(ProcessEntry, trace) == 28);
 
 /// A ROS 2 node of a member process.
 struct NodeEntry {
@@ -115,10 +113,11 @@ struct EndpointEntry {
   std::atomic<uint32_t> process;  ///< slot
   uint32_t node;
   uint32_t cluster;
-  /// Next older endpoint in the chain of the topic's bucket (derived).
+  /// Next older endpoint in a chain of the topic's bucket (derived): that of the live endpoints, or
+  /// of the orphans.
   std::atomic<uint32_t> next_of_topic;
   uint32_t previous_of_topic;  ///< (derived)
-  uint32_t order;              ///< age: larger for younger endpoints; wraps around
+  uint32_t order;              ///< larger the later it was linked into its chain; wraps around
   uint64_t topic_hash;
   SegmentRef block;  ///< publisher: topic DSM header; subscription: subscription header
   Gid gid;
@@ -135,15 +134,14 @@ struct EndpointEntry {
   /// Subscription: publishers that died and were not replaced yet.
   std::atomic<uint32_t> dead_publishers;
   Transfer transfer;  ///< of the topic, from the topic table
-  uint8_t reserved[3];
-  SpareBlock spare;
+  uint8_t reserved[7];
   EndpointCounters counters;
   char topic[name_bytes];
   char type[name_bytes];
 };
 static_assert(
-  sizeof(EndpointEntry) == 784 && offsetof(EndpointEntry, topic_hash) == 40 &&
-  offsetof(EndpointEntry, spare) == 192);
+  sizeof(EndpointEntry) == 768 && offsetof(EndpointEntry, topic_hash) == 40 &&
+  offsetof(EndpointEntry, counters) == 200);
 
 /// One line of the topic table (ROS-lite2 Fig. 7).
 struct TopicEntry {
@@ -183,12 +181,13 @@ struct Profile {
   int32_t host_cpu_of_receive_thread[max_clusters];  ///< index cluster - 1; -1 = not pinned
 };
 
-/// Ends of the match that the owner of the registry lock is changing, or that was changed last:
-/// endpoint slots, or `nothing`. When an owner dies, all other matches are whole.
-struct MatchInHand {
-  std::atomic<uint32_t> publisher;
-  std::atomic<uint32_t> subscription;
+/// SMEM that no endpoint leads to, as it is being reserved for one or given back. The holder of a
+/// line has one, written under the registry lock; the reaper of a dead holder frees what is in it.
+struct Hand {
+  std::atomic<uint64_t> block;  ///< SegmentRef; null = empty; stored last
+  std::atomic<uint64_t> bytes;
 };
+static_assert(sizeof(Hand) == 16);
 
 using GraphWatchers = SlotSet<process_capacity>;
 static_assert(sizeof(GraphWatchers) == 128);
@@ -212,9 +211,7 @@ struct RegistryHeader {
   std::atomic<uint64_t> clusters_present;  ///< bit c - 1: cluster c has a segment
   std::atomic<uint32_t> removed;           ///< 1 = the files are removed; no process can join
   uint32_t needs_repair;  ///< an owner of the mutex died and its changes are not repaired yet
-  uint32_t sweep_from;    ///< endpoint slot at which the next sweep starts
-  uint32_t last_order;    ///< EndpointEntry::order of the youngest endpoint
-  MatchInHand match_in_hand;
+  uint32_t last_order;    ///< largest EndpointEntry::order
   TraceControl trace;
   /// Processes of which a thread has ever watched the graph. A thread adds its process before it
   /// adds its wake word to WakeWords::graph; the slot is removed when it is given back and when it
@@ -223,7 +220,9 @@ struct RegistryHeader {
   ClosingEndpoints closing;           ///< endpoints in a state from closing on (derived)
   std::atomic<uint64_t> death_count;  ///< incremented after the entry in `deaths` is written
   Death deaths[kept_deaths];  ///< ring; the next death goes to index death_count mod kept_deaths
-  std::atomic<uint32_t> topic_buckets[topic_bucket_count];
+  std::atomic<uint32_t> topic_buckets[topic_bucket_count];   ///< live endpoints
+  std::atomic<uint32_t> orphan_buckets[topic_bucket_count];  ///< publishers that are gone
+  Hand hands[lifeline_count];                                ///< by line
   LockSeat seats[lock_seat_count];
 };
 

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <optional>
 
 namespace manycore {
 
@@ -38,11 +37,6 @@ struct SlotSet {
     }
   }
 
-  /// First slot of the set from `from` on, then from 0; nothing if no slot below `end` is in it.
-  std::optional<uint32_t> next(uint32_t from, uint32_t end) const noexcept {
-    const std::optional<uint32_t> found = first(from, end);
-    return found ? found : first(0, from);
-  }
   void clear() noexcept {
     for (std::atomic<uint64_t> & part : parts) {
       part.store(0, std::memory_order_seq_cst);
@@ -50,18 +44,6 @@ struct SlotSet {
   }
 
 private:
-  std::optional<uint32_t> first(uint32_t from, uint32_t end) const noexcept {
-    for (uint32_t slot = from; slot < end; slot += slots_per_part - slot % slots_per_part) {
-      const uint64_t part = parts[slot / slots_per_part].load(std::memory_order_seq_cst);
-      const uint64_t left = part & ~(bit(slot) - 1);
-      if (left != 0) {
-        const uint32_t lowest = static_cast<uint32_t>(__builtin_ctzll(left));
-        const uint32_t found = slot - slot % slots_per_part + lowest;
-        return found < end ? std::optional(found) : std::nullopt;
-      }
-    }
-    return std::nullopt;
-  }
   static constexpr uint64_t bit(uint32_t slot) noexcept {
     return uint64_t{1} << slot % slots_per_part;
   }

@@ -27,7 +27,8 @@ struct alignas(64) SourceEntry {
   std::atomic<uint64_t> reader;   ///< SegmentRef of the ReaderEntry
   /// Publication sequence number up to which each message is accounted for: published before the
   /// match, taken, expired, or counted as lost. Written by the subscriber under its claim, and by
-  /// the sweeper once the source is revoked and nothing is claimed.
+  /// the sweeper once the source is revoked and nothing is claimed. Of a closed subscription: the
+  /// phase of the publisher when its reader was removed.
   std::atomic<uint64_t> accounted;
   std::atomic<uint64_t> displaced;  ///< newest displaced hint, encoded by Displaced; 0 = none
 };
@@ -67,8 +68,6 @@ struct SubscriptionHeader {
   int64_t deadline_ns;
   Watchers watchers;          ///< threads of its process that wait for arrivals
   uint32_t free_source_from;  ///< no source below this index is free; under the registry lock
-  /// closing: sources below this index are revoked; under the registry lock.
-  uint32_t closed_before;
 
   /// Records an arrival. Returns true for the first one, before which no deadline was due.
   [[nodiscard]] bool note_arrival() noexcept {
@@ -96,9 +95,6 @@ struct SubscriptionHeader {
   }
 
   alignas(64) EntryBlocks sources;
-  /// Sweeping: the publishers of sources below this index follow no reference to the subscription
-  /// any more; under the registry lock.
-  uint32_t swept_before;
 
   std::atomic<uint64_t> * slots() noexcept {
     return reinterpret_cast<std::atomic<uint64_t> *>(this + 1);

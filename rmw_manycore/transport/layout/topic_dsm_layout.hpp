@@ -28,18 +28,6 @@ static_assert(sizeof(RecordDescriptor) == 64);
 /// The memory behind a block of at least this size goes back to the system: a hole in the SMEM,
 /// which takes time in each process that maps it.
 constexpr uint64_t min_hole_bytes = 16 << 10;
-/// The SMEM of generations, landings and spare blocks is freed in pieces of at most this size,
-/// which begin at multiples of it or with the block.
-constexpr uint64_t freed_piece_bytes = 64 << 10;
-/// Offset at which the last piece of [begin, begin + bytes) begins.
-constexpr uint64_t last_piece_of(uint64_t begin, uint64_t bytes) {
-  const uint64_t piece = bytes <= freed_piece_bytes ? 0 : (begin + bytes - 1) / freed_piece_bytes;
-  return piece * freed_piece_bytes > begin ? piece * freed_piece_bytes : begin;
-}
-/// Bytes that are left of [begin, begin + bytes) by `kept_pieces`; see GenerationEntry.
-constexpr uint64_t kept_bytes(uint64_t begin, uint64_t bytes, uint64_t kept_pieces) {
-  return kept_pieces == 0 ? bytes : kept_pieces * freed_piece_bytes - begin;
-}
 
 /// One allocation of descriptors followed by record data.
 struct GenerationEntry {
@@ -48,10 +36,7 @@ struct GenerationEntry {
   /// registry lock.
   std::atomic<uint64_t> offset;
   std::atomic<uint32_t> descriptor_count;  ///< power of two
-  /// While the generation is being freed, from its last piece to its first: the number of pieces
-  /// from the beginning of the segment up to the last piece that the generation still holds. Else
-  /// 0. Changed under the registry lock.
-  std::atomic<uint32_t> kept_pieces;
+  uint32_t reserved;
   std::atomic<uint64_t> data_bytes;
 
   /// Offset of the data, which follow the descriptors.
@@ -60,15 +45,9 @@ struct GenerationEntry {
            uint64_t{descriptor_count.load(std::memory_order_relaxed)} * sizeof(RecordDescriptor);
   }
   /// Bytes of the whole generation.
-  uint64_t whole_bytes() const noexcept {
+  uint64_t extent_bytes() const noexcept {
     return uint64_t{descriptor_count.load(std::memory_order_relaxed)} * sizeof(RecordDescriptor) +
            data_bytes.load(std::memory_order_relaxed);
-  }
-  /// Bytes that the generation holds, starting at `offset`.
-  uint64_t extent_bytes() const noexcept {
-    return kept_bytes(
-      offset.load(std::memory_order_relaxed), whole_bytes(),
-      kept_pieces.load(std::memory_order_relaxed));
   }
 };
 static_assert(sizeof(GenerationEntry) == 32);
@@ -85,12 +64,6 @@ struct ReaderEntry {
 };
 static_assert(sizeof(ReaderEntry) == 32);
 
-/// A descriptor of a topic DSM.
-struct DescriptorPlace {
-  uint32_t generation;  ///< index in `generations`
-  uint32_t descriptor;  ///< index in this generation
-};
-
 constexpr uint32_t readers_in_header = 14;
 
 /// Head of a topic DSM: one writer, many readers.
@@ -98,7 +71,7 @@ struct TopicDsmHeader {
   std::atomic<uint32_t> magic;
   std::atomic<uint32_t> endpoint;     ///< slot of the publisher
   std::atomic<uint32_t> incarnation;  ///< of that slot
-  std::atomic<uint32_t> orphan;       ///< 1 = the publisher is gone; freed once drained
+  std::atomic<uint32_t> orphan;       ///< 1 = the publisher is gone; freed once it is unread
   int64_t lifespan_ns;
   uint32_t depth;  ///< of the publisher's KEEP_LAST history
   uint8_t keep_all;
@@ -108,9 +81,6 @@ struct TopicDsmHeader {
   uint32_t process;           ///< slot of the publisher's process
   uint32_t free_reader_from;  ///< no reader below this index is free; under the registry lock
   Gid gid;
-  /// Closing: descriptors before this one hold no reply to reader `closed_before`; under the
-  /// registry lock.
-  DescriptorPlace looked_before;
 
   /// Written by the publisher for each message, read by all readers.
   alignas(64) std::atomic<uint64_t> last;  ///< highest record number published
@@ -127,13 +97,8 @@ struct TopicDsmHeader {
   alignas(64) GenerationEntry generations[max_generations];
   ReaderEntry readers[readers_in_header];
   EntryBlocks further_readers;
-  /// Closing: readers below this index are told that the publisher is gone; under the registry
-  /// lock.
-  uint32_t closed_before;
-  /// Sweeping: readers below this index have been checked; under the registry lock.
-  uint32_t swept_before;
 };
-static_assert(sizeof(TopicDsmHeader) == 1024 && offsetof(TopicDsmHeader, looked_before) == 56);
+static_assert(sizeof(TopicDsmHeader) == 1024 && offsetof(TopicDsmHeader, gid) == 40);
 static_assert(std::is_standard_layout_v<TopicDsmHeader>);
 
 }  // namespace manycore

@@ -16,8 +16,9 @@
 #include "platform/os_process.hpp"
 #include "platform/private_directory.hpp"
 #include "platform/user_directory.hpp"
-#include "transport/matching/closing.hpp"
-#include "transport/matching/spare_blocks.hpp"
+#include "transport/matching/leaving.hpp"
+#include "transport/registry/block_in_hand.hpp"
+#include "transport/registry/slots_of_process.hpp"
 #include "transport/registry/smem_charge.hpp"
 
 namespace manycore {
@@ -141,26 +142,18 @@ bool reap(Registry & registry, uint32_t process) {
   if (registry.lifelines().is_held(process)) {
     return false;
   }
-  closing::EndpointsOfProcess endpoints(registry, process, true);
-  NodesOfProcess nodes(registry, process);
-  while (true) {
-    const Registry::Lock lock(registry);
-    if (!is_to_reap()) {
-      return false;
-    }
-    Turn turn;
-    if (!endpoints.close_some(turn)) {
-      continue;
-    }
-    endpoints.require_all_closed();
-    if (
-      nodes.remove_some(turn) &&
-      spare_blocks::free_some(registry, registry.processes()[process].spare, turn)) {
-      note_death(registry, process);
-      leave_registry(registry, process);
-      return true;
-    }
+  if (!close_endpoints_of(registry, process, true, is_to_reap)) {
+    return false;
   }
+  empty_hand_of_dead(registry, process);
+  const Registry::Lock lock(registry);
+  if (!is_to_reap()) {
+    return false;
+  }
+  remove_nodes_of(registry, process);
+  note_death(registry, process);
+  leave_registry(registry, process);
+  return true;
 }
 
 }  // namespace
@@ -290,17 +283,18 @@ void note_removal(Registry & registry) noexcept {
   }
 }
 
-bool NodesOfProcess::remove_some(Turn & turn) {
-  for (; !left_.empty(); left_.pop_back()) {
-    if (turn.is_over()) {
-      return false;
-    }
-    turn.spend(1);
-    if (is_of_process(registry_.nodes()[left_.back()], process_)) {
-      registry_.nodes().give_back(left_.back());
+void empty_hands_of_receive_threads(Registry & registry) {
+  for (uint32_t line = receive_thread_line + 1; line < configurator_line; ++line) {
+    if (registry.header().hands[line].block.load() != 0 && !registry.lifelines().is_held(line)) {
+      empty_hand_of_dead(registry, line);
     }
   }
-  return true;
+}
+
+void remove_nodes_of(Registry & registry, uint32_t process) {
+  for (const uint32_t slot : slots_of_process(registry.nodes(), process)) {
+    registry.nodes().give_back(slot);
+  }
 }
 
 void leave_registry(Registry & registry, uint32_t process) {

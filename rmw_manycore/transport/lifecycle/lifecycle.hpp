@@ -7,8 +7,7 @@
 
 #include "platform/file_lock.hpp"
 #include "platform/lifeline.hpp"
-#include "transport/matching/turn.hpp"
-#include "transport/registry/slots_of_process.hpp"
+#include "transport/registry/registry.hpp"
 
 namespace manycore {
 
@@ -50,29 +49,19 @@ std::vector<std::string> remove_platform(const PlatformPaths & paths);
 void note_removal(Registry & registry) noexcept;
 
 /// Closes the endpoints of dead processes and frees their slots; sweeping::sweep_all() frees the
-/// endpoints' memory. Takes the registry lock anew for each turn. Starts with dead processes of
+/// endpoints' memory. Takes the registry lock for each endpoint. Starts with dead processes of
 /// `cluster`, so that several reapers do not start with the same process. Returns the number of
 /// dead processes.
 uint32_t reap_dead(Registry & registry, uint32_t cluster);
 
-/// Removes the nodes of a dead or leaving process, which adds no further nodes, turn by turn. The
-/// caller takes the registry lock anew for each turn.
-class NodesOfProcess {
-public:
-  /// Finds the nodes without the registry lock.
-  NodesOfProcess(Registry & registry, uint32_t process)
-  : registry_(registry), process_(process), left_(slots_of_process(registry.nodes(), process)) {}
+/// Frees what killed receive threads had in hand. Takes the registry lock.
+void empty_hands_of_receive_threads(Registry & registry);
 
-  /// Removes as many nodes as the turn allows. Returns true when none is left.
-  bool remove_some(Turn & turn);
+/// Removes the nodes of a dead or leaving process, which adds no further nodes. The caller holds
+/// the registry lock.
+void remove_nodes_of(Registry & registry, uint32_t process);
 
-private:
-  Registry & registry_;
-  const uint32_t process_;
-  std::vector<uint32_t> left_;  ///< slots not visited yet
-};
-
-/// Frees the slot of a process without endpoints, nodes and a spare block. The caller
+/// Frees the slot of a process without endpoints and nodes, and with an empty hand. The caller
 /// holds the registry lock.
 void leave_registry(Registry & registry, uint32_t process);
 

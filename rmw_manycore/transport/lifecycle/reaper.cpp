@@ -246,11 +246,8 @@ bool Reaper::watch_and_reap() {
   if (dead != 0 || some_ended_) {  // or a receive thread did
     remove_unfinished_traces(registry_);
   }
-  sweeping::sweep_all(registry_);
-  {
-    const Registry::Lock lock(registry_);
-    is_closing_ = registry_.header().closing_count != 0;
-  }
+  empty_hands_of_receive_threads(registry_);
+  is_any_in_use_ = sweeping::sweep_all(registry_);
   if (dead != 0) {
     registry_.graph_changed();
   }
@@ -283,7 +280,7 @@ int Reaper::timeout_ms() const noexcept {
   if (some_unwatched_ || !files_) {
     return unwatched_ms;
   }
-  return is_closing_ ? retry_ms : for_ever_ms;
+  return is_any_in_use_ ? retry_ms : for_ever_ms;
 }
 
 int Reaper::try_to_reap() noexcept {

@@ -7,24 +7,21 @@
 
 #include "platform/error.hpp"
 #include "transport/matching/matching.hpp"
-#include "transport/matching/spare_blocks.hpp"
 
 namespace manycore::matching {
 namespace {
 
 /// False if there is no room, and no endpoint that is created at the same time was making the same
 /// block: the match may find that.
-bool make_block(
-  Registry & registry, const Membership & membership, SpareBlock & spare,
-  const spare_blocks::Needed & needed) {
+bool make_block(BlockInHand & hand, const Membership & membership, const NeededBlock & needed) {
   try {
-    spare_blocks::make(registry, membership, spare, needed);
+    hand.make(membership, needed);
     return true;
   } catch (const Error & error) {
     if (error.code() != ErrorCode::no_space) {
       throw;
     }
-    return spare_blocks::await_another(registry, spare, needed);
+    return hand.await_another(needed);
   }
 }
 
@@ -45,6 +42,7 @@ void connect(Registry & registry, const Membership & membership, uint32_t endpoi
   EndpointEntry & own = registry.endpoints()[endpoint];
   std::vector<Candidate> candidates = candidates_of(registry, endpoint);
   const std::set<uint32_t> clusters = clusters_of(own, candidates);
+  std::optional<BlockInHand> hand;
   bool lacks_room = false;
   while (!candidates.empty()) {
     for (const uint32_t id : clusters) {
@@ -52,18 +50,20 @@ void connect(Registry & registry, const Membership & membership, uint32_t endpoi
         cluster->back_ahead();
       }
     }
-    std::optional<spare_blocks::Needed> needed;
+    std::optional<NeededBlock> needed;
     {
       const Registry::Lock lock(registry);
       membership.require();
-      needed = connect_some(registry, endpoint, candidates);
+      needed = connect_some(registry, endpoint, candidates, hand ? &*hand : nullptr);
+    }
+    if (needed && !hand) {
+      hand.emplace(registry);
     }
     if (needed && lacks_room) {
-      spare_blocks::make(registry, membership, own.spare, *needed);
+      hand->make(membership, *needed);
     }
-    lacks_room = needed && !lacks_room && !make_block(registry, membership, own.spare, *needed);
+    lacks_room = needed && !lacks_room && !make_block(*hand, membership, *needed);
   }
-  spare_blocks::free_all(registry, membership, own.spare);
 }
 
 }  // namespace manycore::matching

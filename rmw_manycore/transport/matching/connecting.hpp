@@ -7,8 +7,8 @@
 namespace manycore::matching {
 
 /// Matches a new live endpoint of this process with all endpoints that are compatible. Takes the
-/// registry lock anew for each turn; spare blocks are backed with memory between the turns. Throws
-/// Error{no_space}, and the errors of `membership`.
+/// registry lock anew after each block that is made for a match. Throws Error{no_space}, and the
+/// errors of `membership`.
 void connect(Registry & registry, const Membership & membership, uint32_t endpoint);
 
 }  // namespace manycore::matching

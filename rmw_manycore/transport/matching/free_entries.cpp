@@ -6,27 +6,20 @@
 #include "transport/topic_dsm/reader_table.hpp"
 
 namespace manycore::matching {
-namespace {
-
-/// Adding a block takes system calls, and each of its pages takes time.
-constexpr uint64_t steps_of_growing = 200;
-constexpr uint64_t steps_of_a_page = 50;
-
-}  // namespace
 
 /// Returns the first of the new entries, or nullptr if a block is needed.
 template<typename Entry>
 Entry * FreeEntries::grow(const EntryTable<Entry> & table, Cluster & cluster) {
   const uint64_t bytes = table.next_block_bytes();
-  turn_.spend(steps_of_growing + bytes / page_bytes * steps_of_a_page);
-  if (bytes <= spare_blocks::max_bytes_at_once) {
+  if (bytes <= BlockInHand::max_bytes_at_once) {
     return &table.grow(cluster.ref_of(&cluster.allocate_cleared<Entry>(bytes)).offset());
   }
-  if (!spare_.fits(SpareUse::entries, cluster.id(), bytes)) {
-    needed_ = {SpareUse::entries, cluster.id(), bytes, bytes};
+  const NeededBlock needed{cluster.id(), bytes, bytes, false};
+  if (hand_ == nullptr || !hand_->has(needed)) {
+    needed_ = needed;
     return nullptr;
   }
-  return &table.grow(spare_.take().offset());
+  return &table.grow(hand_->take().offset());
 }
 
 FreeEntries::Source FreeEntries::source(Cluster & cluster, SubscriptionHeader & subscription) {

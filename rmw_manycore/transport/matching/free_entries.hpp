@@ -5,19 +5,19 @@
 
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
-#include "transport/matching/spare_blocks.hpp"
-#include "transport/matching/turn.hpp"
+#include "transport/registry/block_in_hand.hpp"
 #include "transport/registry/cluster.hpp"
 #include "transport/registry/entry_table.hpp"
 
 namespace manycore::matching {
 
 /// Finds the entries of a new match. A table that is full gets another block: a small one at once,
-/// a large one from the spare block of the new endpoint, which it has to make first. The caller
-/// holds the registry lock. Throws Error{no_space|corrupt}.
+/// a large one from the hand, which the caller has to make first. The caller holds the registry
+/// lock. Throws Error{no_space|corrupt}.
 class FreeEntries {
 public:
-  FreeEntries(SpareBlock & spare, Turn & turn) noexcept : spare_(spare), turn_(turn) {}
+  /// `hand`: nullptr = empty.
+  explicit FreeEntries(BlockInHand * hand) noexcept : hand_(hand) {}
 
   struct Source {
     SourceEntry * entry;
@@ -27,15 +27,14 @@ public:
   Source source(Cluster & cluster, SubscriptionHeader & subscription);
   /// Nullptr if a block is needed(). `cluster`: that of the topic DSM.
   ReaderEntry * reader(Cluster & cluster, TopicDsmHeader & dsm);
-  const std::optional<spare_blocks::Needed> & needed() const noexcept { return needed_; }
+  const std::optional<NeededBlock> & needed() const noexcept { return needed_; }
 
 private:
   template<typename Entry>
   Entry * grow(const EntryTable<Entry> & table, Cluster & cluster);
 
-  SpareBlock & spare_;
-  Turn & turn_;
-  std::optional<spare_blocks::Needed> needed_;
+  BlockInHand * const hand_;
+  std::optional<NeededBlock> needed_;
 };
 
 }  // namespace manycore::matching

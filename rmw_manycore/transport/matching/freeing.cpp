@@ -3,26 +3,19 @@
 
 #include <algorithm>
 #include <optional>
-#include <utility>
 
 #include "transport/matching/detaching.hpp"
-#include "transport/matching/match_in_hand.hpp"
-#include "transport/matching/spare_blocks.hpp"
+#include "transport/matching/orphans.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/topic_dsm/generation.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
 #include "transport/transfer/landing.hpp"
 #include "transport/transfer/landings.hpp"
+#include "transport/transfer/lost_movers.hpp"
 
-namespace manycore::sweeping {
+namespace manycore::freeing {
 namespace {
-
-using closing::OrphanReader;
-
-constexpr uint64_t steps_of_a_reader = 8;
-constexpr uint64_t steps_of_a_source = 2;
-constexpr uint32_t free_readers_in_a_step = 16;
 
 /// The phases of a receive thread's process: its own, and those of its movers.
 bool is_any_odd(const ClusterHeader & header) noexcept {
@@ -53,19 +46,16 @@ bool receive_threads_are_out(Registry & registry) {
   return true;
 }
 
-/// Revokes the source of a reader that has taken all of the topic DSM that it can, or that wants
-/// newer messages of other publishers instead.
+/// Revokes the source of a reader that has taken all of the topic DSM that it can.
 Progress revoke(
-  Registry & registry, WantedSources & wanted, uint32_t publisher, const OrphanReader & reader,
-  ReaderEntry & entry, Turn & turn) {
+  Registry & registry, const orphans::Untaken & untaken, const orphans::Reader & reader,
+  ReaderEntry & entry) {
   SourceEntry & source = reader.source;
-  match_in_hand::note(registry.header(), publisher, reader.endpoint_slot);
   if (source.state.load() == SourceState::active) {
-    const std::optional<bool> is_wanted = wanted.contain(reader, turn);
-    if (!is_wanted) {
-      return Progress::turn_over;
-    }
-    if (*is_wanted) {
+    if (
+      untaken.of(reader) != 0 && lost_movers::can_arrive(
+                                   registry, reader.cluster, reader.dsm, reader.subscription,
+                                   reader.endpoint.cluster, source)) {
       return Progress::kept;
     }
     // Dekker with the claim: the reader stores `reading` before it loads the state.
@@ -74,7 +64,7 @@ Progress revoke(
   if (source.reading.load(std::memory_order_seq_cst) != no_record) {
     return Progress::in_use;
   }
-  closing::count_undelivered(registry, reader);
+  orphans::count_undelivered(registry, reader);
   // Remove the reader before the source entry can be reused: if this process dies in between, the
   // next sweep must not mistake a new match for this one.
   remove_reader(reader.cluster, reader.dsm, entry);
@@ -82,198 +72,121 @@ Progress revoke(
   subscription.free_source_from = std::min(subscription.free_source_from, reader.source_index);
   source.state.store(SourceState::free, std::memory_order_release);
   subscription.source_generation.fetch_add(1, std::memory_order_release);
-  return Progress::freed;
+  return Progress::none_left;
 }
 
-/// False if the turn ended before the last reader.
-bool revoke_up_to_last(
-  Registry & registry, WantedSources & wanted, ReaderPass & pass, const Cluster & cluster,
-  TopicDsmHeader & dsm, Turn & turn) {
-  bool stopped = false;
-  const auto visit = [&](ReaderEntry & entry, uint32_t index) {
-    stopped = turn.is_over();
-    if (!stopped && entry.active.load(std::memory_order_acquire) != 0) {
-      turn.spend(steps_of_a_reader);
-      const std::optional<OrphanReader> reader =
-        closing::orphan_reader(registry, cluster, dsm, entry);
-      const Progress progress =
-        reader ? revoke(registry, wanted, pass.endpoint, *reader, entry, turn) : Progress::kept;
-      stopped = progress == Progress::turn_over;
-      pass.is_any_in_use = pass.is_any_in_use || progress == Progress::in_use;
-    } else if (index % free_readers_in_a_step == 0) {
-      turn.spend(1);
-    }
-    dsm.swept_before = stopped ? dsm.swept_before : index + 1;
-    return stopped;
-  };
-  visit_reader_table(cluster, dsm, visit, dsm.swept_before);
-  return !stopped;
+Progress revoke_all(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {
+  const orphans::Untaken untaken(cluster, dsm);
+  Progress progress = Progress::none_left;
+  orphans::for_each_reader(
+    registry, cluster, dsm, [&](const orphans::Reader & reader, ReaderEntry & entry) {
+      progress = std::max(progress, revoke(registry, untaken, reader, entry));
+    });
+  return progress;
 }
 
-bool is_read(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
-  bool found = false;
-  visit_reader_table(cluster, dsm, [&](const ReaderEntry & entry, uint32_t index) {
-    turn.spend(index % free_readers_in_a_step == 0 ? 1 : 0);
-    found = entry.active.load(std::memory_order_acquire) != 0 &&
-            closing::orphan_reader(registry, cluster, dsm, entry);
-    return found;
-  });
-  return found;
-}
-
-/// Continues in the reader table where the last turn of any process ended. `freed` when no reader
-/// is left.
-Progress revoke_some(
-  Registry & registry, WantedSources & wanted, ReaderPass & pass, uint32_t endpoint,
-  const Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
-  if (pass.endpoint != endpoint) {
-    pass = {endpoint, dsm.swept_before == 0, false};
-  }
-  while (true) {
-    if (!revoke_up_to_last(registry, wanted, pass, cluster, dsm, turn)) {
-      return Progress::turn_over;
-    }
-    dsm.swept_before = 0;
-    if (!is_read(registry, cluster, dsm, turn)) {
-      return Progress::freed;
-    }
-    if (std::exchange(pass.began_first, true)) {
-      return std::exchange(pass, {}).is_any_in_use ? Progress::in_use : Progress::kept;
-    }
-  }
-}
-
-/// Frees blocks of a table, last block first, as the turn allows. Returns true when none is left.
-/// Each block is freed as the spare block of the endpoint.
+/// Takes up blocks of a table, last block first. False once the hand is full.
 template<typename Entry>
-bool free_some_of_table(
-  Registry & registry, EndpointEntry & entry, const EntryTable<Entry> & table, Turn & turn) {
-  while (spare_blocks::free_some(registry, entry.spare, turn)) {
-    const auto last = table.take_last();
-    if (!last) {
-      return true;
+bool take_up_table(const Cluster & cluster, const EntryTable<Entry> & table, BlockInHand & hand) {
+  while (const auto last = table.last()) {
+    hand.take_up(SegmentRef::make(cluster.id(), last->offset), last->bytes);
+    table.drop_last();
+    if (!hand.is_empty()) {
+      return false;
     }
-    entry.spare.put(
-      SpareUse::none, SegmentRef::make(entry.block.cluster(), last->offset), last->bytes);
   }
-  return false;
+  return true;
 }
 
-/// Frees pieces of generations as the turn allows. Returns true when none is left.
-bool free_some_generations(Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
+bool take_up_generations(const Cluster & cluster, TopicDsmHeader & dsm, BlockInHand & hand) {
   for (GenerationEntry & generation : dsm.generations) {
-    while (generation.offset.load() != 0) {
-      if (!turn.begin_freeing(generation.whole_bytes())) {
+    if (generation.offset.load() != 0) {
+      Generation::take_up(cluster, generation, hand);
+      if (!hand.is_empty()) {
         return false;
       }
-      Generation::free_some(cluster, generation);
     }
   }
   return true;
 }
 
-/// Frees pieces of the retired landing in `receiver` as the turn allows. True when none is left.
-bool free_some_of_retired(
-  const Cluster & cluster, TopicDsmHeader & dsm, Cluster & receiver, Turn & turn) {
-  for (bool is_free = false; !is_free;) {
-    if (!turn.begin_freeing(landing_bytes(dsm))) {
-      return false;
-    }
-    is_free = landings::free_piece_of_retired(cluster, dsm, receiver);
-  }
-  return true;
-}
-
-/// Before the generations, which say how large landings are. True when none is left.
-bool free_some_landings(
-  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
-  while (Cluster * const receiver = landings::retire_next(registry, cluster, dsm)) {
-    if (!free_some_of_retired(cluster, dsm, *receiver, turn)) {
+/// Before the generations, which say how large landings are.
+bool take_up_landings(
+  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, BlockInHand & hand) {
+  while (const Cluster * const receiver = landings::retire_next(registry, cluster, dsm)) {
+    landings::take_up_retired(cluster, dsm, *receiver, hand);
+    if (!hand.is_empty()) {
       return false;
     }
   }
   return true;
 }
 
-/// Frees pieces of the head of an endpoint that holds no other memory. Clears the reference in the
-/// entry first: if this process dies in between, no repairer follows a reference to freed memory.
-Progress free_some_of_head(
-  Registry & registry, EndpointEntry & entry, uint64_t bytes, Turn & turn) {
-  entry.spare.put(SpareUse::none, std::exchange(entry.block, SegmentRef{}), bytes);
-  return spare_blocks::free_some(registry, entry.spare, turn) ? Progress::freed
-                                                              : Progress::freed_some;
+/// The last block, so no repairer follows the reference in the entry once the block is freed.
+Progress take_up_head(EndpointEntry & entry, uint64_t bytes, BlockInHand & hand) {
+  hand.take_up(entry.block, bytes);
+  entry.block = SegmentRef{};
+  return Progress::none_left;
 }
 
-/// True if the publisher of `source` holds no references into the subscription. Its reader entry
-/// was removed when the subscription closed, so the topic DSM may be freed since. The publisher's
-/// slot is checked first, before the header is read.
+/// True if the publisher of `source` holds no references into the subscription: it is not in the
+/// phase in which it was when its reader entry was removed. The topic DSM may be freed since, so
+/// the publisher's slot is checked first, before the header is read.
 bool publisher_is_out(Registry & registry, const SourceEntry & source) {
   const TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
-  return dsm == nullptr || dsm->magic.load() != topic_dsm_magic ||
-         dsm->phase.load(std::memory_order_seq_cst) % 2 == 0;
-}
-
-/// Frees the landing of a publisher that the subscription was the last to read in its cluster, once
-/// no thread follows references to it: all are out, or its first piece was freed. False if the turn
-/// ended before that.
-bool free_landing_of(
-  Registry & registry, Cluster & cluster, const SourceEntry & source, bool are_out, Turn & turn) {
-  TopicDsmHeader * const dsm =
-    source.state.load() == SourceState::free ? nullptr : topic_dsm_of(registry, source);
-  const Cluster * const publisher =
-    dsm == nullptr ? nullptr : registry.map_cluster(SegmentRef{source.topic_dsm.load()}.cluster());
-  if (publisher == nullptr || !landings::has_retired(*publisher, *dsm, cluster.id())) {
+  if (dsm == nullptr || dsm->magic.load() != topic_dsm_magic) {
     return true;
   }
-  return (!are_out && !landings::is_being_freed(*publisher, *dsm, cluster.id())) ||
-         free_some_of_retired(*publisher, *dsm, cluster, turn);
+  const uint64_t phase = dsm->phase.load(std::memory_order_seq_cst);
+  return phase % 2 == 0 || phase != source.accounted.load();
 }
 
-/// Checks the publishers of the sources, continuing where the last turn of any process ended. A
-/// publisher seen outside its phase once stays outside this subscription: it cannot find it any
-/// more. `threads_are_out`: see receive_threads_are_out(). `freed` when all were seen.
+/// Takes up the landing of a publisher that the subscription was the last to read in its cluster.
+void take_up_landing_of(
+  Registry & registry, const Cluster & cluster, const SourceEntry & source, BlockInHand & hand) {
+  TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
+  const Cluster * const publisher =
+    dsm == nullptr ? nullptr : registry.map_cluster(SegmentRef{source.topic_dsm.load()}.cluster());
+  if (publisher != nullptr && landings::has_retired(*publisher, *dsm, cluster.id())) {
+    landings::take_up_retired(*publisher, *dsm, cluster, hand);
+  }
+}
+
+/// A publisher seen outside its phase once stays outside this subscription, which it cannot find
+/// any more: its source is freed, so it is not looked at again.
 Progress see_publishers_out(
-  Registry & registry, Cluster & cluster, SubscriptionHeader & header, bool threads_are_out,
-  Turn & turn) {
-  Progress progress = threads_are_out ? Progress::freed : Progress::in_use;
-  source_table(cluster, header).visit(header.swept_before, [&](SourceEntry & source, uint32_t i) {
-    if (turn.is_over()) {
-      progress = Progress::turn_over;
-      return true;
+  Registry & registry, Cluster & cluster, SubscriptionHeader & header, BlockInHand & hand) {
+  Progress progress = Progress::none_left;
+  visit_source_table(cluster, header, [&](SourceEntry & source, uint32_t) {
+    if (source.state.load() == SourceState::free) {
+      return false;
     }
-    turn.spend(steps_of_a_source);
-    const bool are_out = threads_are_out && (source.state.load() == SourceState::free ||
-                                             publisher_is_out(registry, source));
-    if (!free_landing_of(registry, cluster, source, are_out, turn)) {
-      progress = Progress::freed_some;
-      return true;
-    }
-    if (!are_out) {
+    if (!publisher_is_out(registry, source)) {
       progress = Progress::in_use;
-      return true;
+      return false;
     }
-    header.swept_before = i + 1;
-    return false;
+    take_up_landing_of(registry, cluster, source, hand);
+    source.state.store(SourceState::free);
+    if (!hand.is_empty()) {
+      progress = Progress::some_left;
+    }
+    return progress == Progress::some_left;
   });
   return progress;
 }
 
 }  // namespace
 
-Progress sweep_publisher(
-  Registry & registry, WantedSources & wanted, ReaderPass & pass, uint32_t endpoint, Turn & turn) {
+Progress free_publisher(Registry & registry, uint32_t endpoint, BlockInHand & hand) {
   EndpointEntry & entry = registry.endpoints()[endpoint];
-  if (!spare_blocks::free_some(registry, entry.spare, turn)) {
-    return Progress::freed_some;
-  }
   Cluster * const cluster = registry.map_cluster(entry.block.cluster());
   auto * const dsm = registry.map<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
-    return Progress::freed;
+    return Progress::none_left;
   }
   if (entry.slot.state.load() != SlotState::unreachable) {
-    const Progress progress = revoke_some(registry, wanted, pass, endpoint, *cluster, *dsm, turn);
-    if (progress != Progress::freed) {
+    if (const Progress progress = revoke_all(registry, *cluster, *dsm);
+        progress != Progress::none_left) {
       return progress;
     }
     // Dekker with the receive threads: each stores its phase before it looks at the state.
@@ -281,40 +194,35 @@ Progress sweep_publisher(
     if (!receive_threads_are_out(registry)) {
       return Progress::in_use;
     }
+    registry.unlink_endpoint(endpoint, Registry::Chain::orphans);
     entry.slot.state.store(SlotState::unreachable);
   }
-  if (
-    !free_some_landings(registry, *cluster, *dsm, turn) ||
-    !free_some_generations(*cluster, *dsm, turn) ||
-    !free_some_of_table(registry, entry, further_readers(*cluster, *dsm), turn)) {
-    return Progress::freed_some;
-  }
-  return free_some_of_head(registry, entry, header_bytes(*dsm), turn);
+  const bool is_head_left = take_up_landings(registry, *cluster, *dsm, hand) &&
+                            take_up_generations(*cluster, *dsm, hand) &&
+                            take_up_table(*cluster, further_readers(*cluster, *dsm), hand);
+  return is_head_left ? take_up_head(entry, header_bytes(*dsm), hand) : Progress::some_left;
 }
 
-Progress sweep_subscription(Registry & registry, EndpointEntry & entry, Turn & turn) {
-  if (!spare_blocks::free_some(registry, entry.spare, turn)) {
-    return Progress::freed_some;
-  }
+Progress free_subscription(Registry & registry, uint32_t endpoint, BlockInHand & hand) {
+  EndpointEntry & entry = registry.endpoints()[endpoint];
   Cluster * const cluster = registry.map_cluster(entry.block.cluster());
   auto * const header = registry.map<SubscriptionHeader>(entry.block);
   if (cluster == nullptr || header == nullptr) {
-    return Progress::freed;
+    return Progress::none_left;
   }
   if (entry.slot.state.load() != SlotState::unreachable) {
-    // First: movers follow references to the landings that are then freed.
-    const bool are_out = receive_threads_are_out(registry);
-    const Progress progress = see_publishers_out(registry, *cluster, *header, are_out, turn);
-    if (progress != Progress::freed) {
+    if (!receive_threads_are_out(registry)) {
+      return Progress::in_use;
+    }
+    if (const Progress progress = see_publishers_out(registry, *cluster, *header, hand);
+        progress != Progress::none_left) {
       return progress;
     }
     header->magic.store(0);
     entry.slot.state.store(SlotState::unreachable);
   }
-  if (!free_some_of_table(registry, entry, source_table(*cluster, *header), turn)) {
-    return Progress::freed_some;
-  }
-  return free_some_of_head(registry, entry, block_bytes(*header), turn);
+  const bool is_head_left = take_up_table(*cluster, source_table(*cluster, *header), hand);
+  return is_head_left ? take_up_head(entry, block_bytes(*header), hand) : Progress::some_left;
 }
 
-}  // namespace manycore::sweeping
+}  // namespace manycore::freeing

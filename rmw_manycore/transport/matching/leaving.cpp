@@ -1,58 +1,70 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/matching/leaving.hpp"
 
+#include <optional>
 #include <vector>
 
 #include "transport/matching/closing.hpp"
 #include "transport/matching/sweeping.hpp"
+#include "transport/registry/slots_of_process.hpp"
 
 namespace manycore {
 namespace {
 
-/// Returns the slots of publishers that are gone and that no subscription reads any more.
+/// Returns the slots of publishers that may be free of readers now.
 std::vector<uint32_t> close(Registry & registry, uint32_t endpoint) {
   std::vector<uint32_t> unread;
-  const Slot & slot = registry.endpoints()[endpoint].slot;
-  const uint32_t incarnation = slot.incarnation.load();
-  for (bool closed = false; !closed;) {
-    const Registry::Lock lock(registry, registry.parting_wait_ns());
-    if (slot.state.load() == SlotState::free || slot.incarnation.load() != incarnation) {
-      break;  // another process closed and freed it
-    }
+  const Registry::Lock lock(registry, registry.parting_wait_ns());
+  if (registry.endpoints().is_live(endpoint)) {
     try {
-      Turn turn;
-      closed = closing::close_some(registry, endpoint, false, turn, &unread);
+      closing::close(registry, endpoint, false, unread);
     } catch (const ClusterUnmappable &) {
-      break;  // a cluster cannot be mapped: the following sweep wakes the reaper
+      // It stays `closing`: the sweep wakes the reaper, which has descriptors of its own.
     }
   }
   return unread;
-}
-
-/// Sweeps one endpoint by itself, because a brief round need not come to it.
-void sweep(Registry & registry, uint32_t endpoint) {
-  sweeping::Round round(registry);
-  for (bool swept = false; !swept;) {
-    const Registry::Lock lock(registry, registry.parting_wait_ns());
-    swept = round.sweep_some_of(endpoint);
-  }
 }
 
 }  // namespace
 
 void leave_graph(Registry & registry, uint32_t endpoint) noexcept {
   try {
-    const uint32_t cluster = registry.endpoints()[endpoint].cluster;
-    const std::vector<uint32_t> unread = close(registry, endpoint);
-    sweep(registry, endpoint);
-    for (const uint32_t publisher : unread) {
-      sweep(registry, publisher);
+    const Cluster & cluster = registry.clusters().at(registry.endpoints()[endpoint].cluster);
+    std::vector<uint32_t> closed = close(registry, endpoint);
+    closed.push_back(endpoint);
+    for (const uint32_t each : closed) {
+      if (sweeping::sweep(registry, each, registry.parting_wait_ns()) == sweeping::Result::in_use) {
+        cluster.wake_reaper();
+      }
     }
-    sweeping::sweep_a_little(registry, cluster, registry.parting_wait_ns());
   } catch (const std::exception &) {
     // The registry stayed locked: the endpoint is closed when its process leaves or ends.
   }
   registry.graph_changed();
+}
+
+bool close_endpoints_of(
+  Registry & registry, uint32_t process, bool died, const std::function<bool()> & may_go_on) {
+  std::optional<ClusterUnmappable> obstacle;
+  std::vector<uint32_t> unread;  // the sweep that follows looks at all
+  for (const uint32_t slot : slots_of_process(registry.endpoints(), process)) {
+    const Registry::Lock lock(registry, registry.parting_wait_ns());
+    if (!may_go_on()) {
+      return false;
+    }
+    if (!is_of_process(registry.endpoints()[slot], process)) {
+      continue;
+    }
+    try {
+      closing::close(registry, slot, died, unread);
+    } catch (const ClusterUnmappable & error) {
+      obstacle.emplace(error);
+    }
+  }
+  if (obstacle) {
+    throw ClusterUnmappable(*obstacle);
+  }
+  return true;
 }
 
 }  // namespace manycore

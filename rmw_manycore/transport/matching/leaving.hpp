@@ -5,8 +5,14 @@
 
 namespace manycore {
 
-/// Closes and sweeps an endpoint for its owner, taking the registry lock as often as needed, and
-/// wakes the processes that watch the graph.
+/// Closes and sweeps an endpoint for its owner, and wakes the processes that watch the graph.
 void leave_graph(Registry & registry, uint32_t endpoint) noexcept;
+
+/// Closes all endpoints of a process that creates no more of them, each in a hold of the registry
+/// lock of its own, as long as `may_go_on` says under the lock. False if it said no. `died`: see
+/// closing::close(). Throws ClusterUnmappable, once all others are closed, if an endpoint could not
+/// be.
+bool close_endpoints_of(
+  Registry & registry, uint32_t process, bool died, const std::function<bool()> & may_go_on);
 
 }  // namespace manycore

@@ -5,8 +5,6 @@
 
 #include "platform/error.hpp"
 #include "transport/matching/free_entries.hpp"
-#include "transport/matching/match_in_hand.hpp"
-#include "transport/matching/turn.hpp"
 #include "transport/qos/liveliness.hpp"
 #include "transport/qos/qos_compatibility.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
@@ -18,22 +16,12 @@
 namespace manycore::matching {
 namespace {
 
-constexpr uint64_t steps_of_a_candidate = 3;
-constexpr uint64_t steps_of_a_match = 7;
-
 /// Both ends of a potential match.
 struct Pair {
   uint32_t publisher_slot;
   uint32_t subscription_slot;
   EndpointEntry & publisher;
   EndpointEntry & subscription;
-  SpareBlock & spare;  ///< of the new one
-};
-
-/// What a candidate has come to.
-struct Considered {
-  bool is_done = true;
-  std::optional<spare_blocks::Needed> needed{};
 };
 
 /// True if the subscription gets the remaining history, false if only messages published from now
@@ -53,29 +41,6 @@ void count_match(Registry & registry, const Pair & pair) {
   }
 }
 
-/// Gives the publisher's records a place in the subscription's cluster, where they are transferred.
-/// A former landing that is being freed is freed first: nothing follows references to it any more.
-Considered find_place(
-  Registry & registry, const Pair & pair, TopicDsmHeader & dsm, Cluster & receiver, Turn & turn) {
-  const landings::Place place =
-    landings::find_place(registry, pair.publisher, dsm, receiver, pair.spare);
-  if (place == landings::Place::ready) {
-    return {};
-  }
-  const uint64_t bytes = landing_bytes(dsm);
-  if (place == landings::Place::missing) {
-    const uint64_t data_bytes = dsm.generations[0].data_bytes.load(std::memory_order_relaxed);
-    return {
-      false, spare_blocks::Needed{SpareUse::landing, receiver.id(), bytes, bytes - data_bytes}};
-  }
-  if (turn.begin_freeing(bytes)) {
-    landings::free_piece_of_retired(registry.clusters().at(pair.publisher.cluster), dsm, receiver);
-  } else {
-    turn.end();
-  }
-  return {false};
-}
-
 /// Invalidates references to the entry's former use. Returns the number of the last record that the
 /// subscription does not want.
 uint64_t begin_source(const Pair & pair, const TopicDsmHeader & dsm, SourceEntry & source) {
@@ -91,8 +56,8 @@ uint64_t begin_source(const Pair & pair, const TopicDsmHeader & dsm, SourceEntry
   return taken;
 }
 
-Considered join(Registry & registry, const Pair & pair, Turn & turn) {
-  turn.spend(steps_of_a_match);
+/// Returns the block that has to be in hand first.
+std::optional<NeededBlock> join(Registry & registry, const Pair & pair, BlockInHand * hand) {
   Cluster & publisher_cluster = registry.clusters().at(pair.publisher.cluster);
   Cluster & subscription_cluster = registry.clusters().at(pair.subscription.cluster);
   auto * const dsm = publisher_cluster.find<TopicDsmHeader>(pair.publisher.block.offset());
@@ -102,24 +67,24 @@ Considered join(Registry & registry, const Pair & pair, Turn & turn) {
     throw Error(
       ErrorCode::corrupt, "the registry is damaged; stop the nodes, run 'manycore clean'");
   }
-  FreeEntries entries(pair.spare, turn);
+  FreeEntries entries(hand);
   const FreeEntries::Source free_source = entries.source(subscription_cluster, *header);
   ReaderEntry * const free_reader = entries.reader(publisher_cluster, *dsm);
   if (entries.needed()) {
-    return {false, entries.needed()};
+    return entries.needed();
   }
   SourceEntry & source = *free_source.entry;
   ReaderEntry & reader = *free_reader;
-  if (const Considered found = find_place(registry, pair, *dsm, subscription_cluster, turn);
-      !found.is_done) {
-    return found;
+  if (
+    const auto needed =
+      landings::find_place(registry, pair.publisher, *dsm, subscription_cluster, hand)) {
+    return needed;
   }
-  match_in_hand::note(registry.header(), pair.publisher_slot, pair.subscription_slot);
   const uint64_t taken = begin_source(pair, *dsm, source);
   source.reader.store(publisher_cluster.ref_of(&reader).word, std::memory_order_relaxed);
   source.state.store(SourceState::joining, std::memory_order_release);
   // From here on the source leads to the landing, should this process die.
-  landings::attach(publisher_cluster, *dsm, subscription_cluster, pair.spare);
+  landings::attach(publisher_cluster, *dsm, subscription_cluster, hand);
 
   // Release: a receive thread may still be reading the entry's former reader.
   reader.endpoint.store(pair.subscription_slot, std::memory_order_release);
@@ -164,7 +129,8 @@ void count_incompatible_type(Registry & registry, const Pair & pair) {
   }
 }
 
-Considered consider(Registry & registry, const Pair & pair, Turn & turn) {
+/// Returns the block that has to be in hand first.
+std::optional<NeededBlock> consider(Registry & registry, const Pair & pair, BlockInHand * hand) {
   if (
     pair.publisher.role != pair.subscription.role ||
     (pair.subscription.ignore_local != 0 && pair.publisher.process == pair.subscription.process)) {
@@ -179,7 +145,7 @@ Considered consider(Registry & registry, const Pair & pair, Turn & turn) {
     count_incompatible(registry, pair, policy);
     return {};
   }
-  return join(registry, pair, turn);
+  return join(registry, pair, hand);
 }
 
 bool is_other_end(const EndpointEntry & entry, const char * topic, EndpointKind kind) {
@@ -189,7 +155,7 @@ bool is_other_end(const EndpointEntry & entry, const char * topic, EndpointKind 
 }  // namespace
 
 void require_reach(Registry & registry, const std::string & topic, EndpointKind kind) {
-  registry.for_each_of_bucket(topic.c_str(), [&](uint32_t slot) {
+  registry.for_each_of_bucket(topic.c_str(), Registry::Chain::live, [&](uint32_t slot) {
     const EntryCopy<EndpointEntry> other(registry.endpoints(), slot);
     if (is_other_end(*other, topic.c_str(), kind) && other.holds()) {
       registry.map_cluster((*other).cluster);
@@ -212,24 +178,20 @@ std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint) {
   return candidates;
 }
 
-std::optional<spare_blocks::Needed> connect_some(
-  Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates) {
+std::optional<NeededBlock> connect_some(
+  Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates, BlockInHand * hand) {
   EndpointEntry & own = registry.endpoints()[endpoint];
-  for (Turn turn; !turn.is_over() && !candidates.empty();) {
+  for (; !candidates.empty(); candidates.pop_back()) {
     const Candidate candidate = candidates.back();
     EndpointEntry & other = registry.endpoints()[candidate.slot];
     const bool is_there = registry.endpoints().is_live(candidate.slot) &&
                           other.slot.incarnation.load() == candidate.incarnation;
     const Pair pair = own.kind == EndpointKind::publisher
-                        ? Pair{endpoint, candidate.slot, own, other, own.spare}
-                        : Pair{candidate.slot, endpoint, other, own, own.spare};
-    turn.spend(steps_of_a_candidate);
-    const Considered considered = is_there ? consider(registry, pair, turn) : Considered{};
-    if (considered.needed) {
-      return considered.needed;
-    }
-    if (considered.is_done) {
-      candidates.pop_back();
+                        ? Pair{endpoint, candidate.slot, own, other}
+                        : Pair{candidate.slot, endpoint, other, own};
+    const auto needed = is_there ? consider(registry, pair, hand) : std::nullopt;
+    if (needed) {
+      return needed;
     }
   }
   return std::nullopt;

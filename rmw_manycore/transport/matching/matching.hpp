@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "transport/matching/spare_blocks.hpp"
+#include "transport/registry/block_in_hand.hpp"
 #include "transport/registry/registry.hpp"
 
 namespace manycore::matching {
@@ -27,10 +27,10 @@ struct Candidate {
 /// would fail midway.
 std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint);
 
-/// Matches a live endpoint with the compatible and live ones among the last candidates, and removes
-/// these from the list, until the turn is over or a match needs a block that the endpoint has to
-/// make first. Returns that block. The caller holds the registry lock.
-std::optional<spare_blocks::Needed> connect_some(
-  Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates);
+/// Matches a live endpoint with the compatible and live ones among the candidates, the last ones
+/// first, and removes them from the list, until a match needs a block that has to be in hand first.
+/// Returns that block. `hand`: nullptr = empty. The caller holds the registry lock.
+std::optional<NeededBlock> connect_some(
+  Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates, BlockInHand * hand);
 
 }  // namespace manycore::matching

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "transport/matching/match_in_hand.hpp"
-#include "transport/matching/spare_blocks.hpp"
+#include "transport/matching/detaching.hpp"
 #include "transport/queue/source_table.hpp"
+#include "transport/registry/endpoint_blocks.hpp"
 #include "transport/registry/registry.hpp"
 #include "transport/registry/snapshot.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
@@ -14,10 +14,83 @@
 #include "transport/transfer/landings.hpp"
 
 namespace manycore {
+namespace matches {
+namespace {
+
+/// Calls `visit(EndpointEntry &, const Cluster &, Header &)` for each endpoint of a kind that has
+/// memory.
+template<typename Header, typename Visit>
+void for_each_endpoint(Registry & registry, EndpointKind kind, Visit visit) {
+  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
+    EndpointEntry & entry = registry.endpoints()[slot];
+    const Cluster * const cluster = registry.clusters().find(entry.block.cluster());
+    auto * const header = registry.clusters().find<Header>(entry.block);
+    if (
+      entry.kind == kind && has_memory(entry.slot.state.load(std::memory_order_acquire)) &&
+      cluster != nullptr && header != nullptr) {
+      visit(entry, *cluster, *header);
+    }
+  }
+}
+
+/// Before half matches are undone: the last reader in a cluster retires the landing there.
+void count_readers_of_landings(Registry & registry) {
+  for_each_endpoint<TopicDsmHeader>(
+    registry, EndpointKind::publisher,
+    [](EndpointEntry & entry, const Cluster & cluster, TopicDsmHeader & dsm) {
+      entry.matched_current.store(0);
+      if (dsm.transfer != static_cast<uint8_t>(Transfer::dsm)) {
+        landings::forget_readers(cluster, dsm);
+        for_each_reader(cluster, dsm, [&](const ReaderEntry & reader) {
+          landings::count_reader(cluster, dsm, SegmentRef{reader.subscription.load()}.cluster());
+        });
+      }
+    });
+}
+
+/// Undoes a match that is made by half. Not `free`: the publisher may have seen the reader, so its
+/// phase must be checked through this entry when the subscription is freed.
+void undo_half(Registry & registry, SourceEntry & source, uint32_t receiver) {
+  detach_reader(registry, source, receiver);
+  source.state.store(SourceState::revoked, std::memory_order_seq_cst);
+}
+
+/// A publisher that is gone is not counted once all its readers are notified.
+void count_sources(
+  Registry & registry, EndpointEntry & entry, const Cluster & cluster,
+  SubscriptionHeader & subscription) {
+  uint64_t count = 0;
+  visit_source_table(cluster, subscription, [&](SourceEntry & source, uint32_t) {
+    const SourceState state = source.state.load();
+    if (state == SourceState::joining) {
+      undo_half(registry, source, entry.cluster);
+    } else if (state == SourceState::active) {
+      const TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
+      if (dsm != nullptr && dsm->orphan.load() == 0) {
+        ++count;
+        registry.endpoints()[source.topic_dsm_endpoint.load()].matched_current.fetch_add(1);
+      }
+    }
+    return false;
+  });
+  entry.matched_current.store(count);
+}
+
+/// Undoes the match that was being made, and counts all matches anew.
+void repair(Registry & registry) {
+  count_readers_of_landings(registry);
+  for_each_endpoint<SubscriptionHeader>(
+    registry, EndpointKind::subscription,
+    [&](EndpointEntry & entry, const Cluster & cluster, SubscriptionHeader & subscription) {
+      count_sources(registry, entry, cluster, subscription);
+    });
+}
+
+}  // namespace
+}  // namespace matches
 
 void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
   Cluster * const cluster = clusters_.find(entry.block.cluster());
-  spare_blocks::mark(clusters_, entry.spare);
   if (cluster == nullptr || !entry.block) {
     return;
   }
@@ -80,9 +153,6 @@ void Registry::repair() {
   processes_.rebuild_free_list();
   nodes_.rebuild_free_list();
   endpoints_.rebuild_free_list();
-  for (std::atomic<uint32_t> & bucket : header().topic_buckets) {
-    bucket.store(nothing, std::memory_order_relaxed);
-  }
   const uint64_t present = header().clusters_present.load();
   for (uint32_t id = 1; id <= max_clusters; ++id) {
     if ((present >> (id - 1) & 1) != 0 && clusters_.find(id) != nullptr) {
@@ -93,37 +163,68 @@ void Registry::repair() {
     if (!processes_.is_live(slot)) {
       continue;
     }
-    spare_blocks::mark(clusters_, processes_[slot].spare);
     Cluster * const cluster = clusters_.find(processes_[slot].cluster);
     if (cluster != nullptr) {
       cluster->mark_charged(processes_[slot].charged_bytes);
     }
   }
-  header().closing.clear();
-  header().closing_count = 0;
-  std::vector<uint32_t> live;
   for (uint32_t slot = 0; slot < endpoints_.high_water(); ++slot) {
-    EndpointEntry & entry = endpoints_[slot];
-    const SlotState state = entry.slot.state.load(std::memory_order_acquire);
+    if (endpoints_[slot].slot.state.load(std::memory_order_acquire) != SlotState::free) {
+      mark_blocks_of(endpoints_[slot]);
+    }
+  }
+  mark_blocks_in_hands();
+  link_all_endpoints();
+  matches::repair(*this);
+}
+
+/// A block that its endpoint still leads to was about to change hands: it stays with the endpoint.
+void Registry::mark_blocks_in_hands() noexcept {
+  for (Hand & hand : header().hands) {
+    const SegmentRef block{hand.block.load()};
+    Cluster * const cluster = block ? clusters_.find(block.cluster()) : nullptr;
+    if (cluster == nullptr) {
+      continue;
+    }
+    if (cluster->is_allocated(block.offset())) {
+      hand.block.store(0);
+    } else {
+      cluster->mark_allocated(block.offset(), hand.bytes.load());
+    }
+  }
+}
+
+/// In the order in which they were linked: a concurrent walk to older endpoints continues.
+void Registry::link_all_endpoints() {
+  RegistryHeader & head = header();
+  for (uint32_t i = 0; i < topic_bucket_count; ++i) {
+    head.topic_buckets[i].store(nothing, std::memory_order_relaxed);
+    head.orphan_buckets[i].store(nothing, std::memory_order_relaxed);
+  }
+  head.closing.clear();
+  head.closing_count = 0;
+  std::vector<uint32_t> linked;
+  for (uint32_t slot = 0; slot < endpoints_.high_water(); ++slot) {
+    const SlotState state = endpoints_[slot].slot.state.load(std::memory_order_acquire);
     if (state == SlotState::free) {
       continue;
     }
-    mark_blocks_of(entry);
-    if (state == SlotState::live) {
-      live.push_back(slot);
-    } else {
-      header().closing.add(slot);
-      ++header().closing_count;
+    if (state != SlotState::live) {
+      head.closing.add(slot);
+      ++head.closing_count;
+    }
+    const bool is_orphan = state != SlotState::live && state != SlotState::unreachable &&
+                           endpoints_[slot].kind == EndpointKind::publisher;
+    if (state == SlotState::live || is_orphan) {
+      linked.push_back(slot);
     }
   }
-  // Link in order of age: a concurrent walk to older endpoints continues.
-  std::sort(live.begin(), live.end(), [this](uint32_t a, uint32_t b) {
-    return header().last_order - endpoints_[a].order > header().last_order - endpoints_[b].order;
+  std::sort(linked.begin(), linked.end(), [&](uint32_t a, uint32_t b) {
+    return head.last_order - endpoints_[a].order > head.last_order - endpoints_[b].order;
   });
-  for (const uint32_t slot : live) {
-    link_endpoint(slot);
+  for (const uint32_t slot : linked) {
+    link_endpoint(slot, endpoints_.is_live(slot) ? Chain::live : Chain::orphans);
   }
-  match_in_hand::repair(*this);
 }
 
 }  // namespace manycore

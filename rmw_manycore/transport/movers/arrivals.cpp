@@ -2,15 +2,12 @@
 #include "transport/movers/arrivals.hpp"
 
 #include "transport/layout/subscription_layout.hpp"
-#include "transport/matching/turn.hpp"
 #include "transport/notification/announced.hpp"
 #include "transport/registry/odd_phase.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
 
 namespace manycore {
 namespace {
-
-constexpr uint64_t steps_of_a_publisher = max_clusters;
 
 /// Sets them to resync by the reader table: a mover has no list of them, as publishers have.
 void request_resyncs(const Destination & to) noexcept {
@@ -63,26 +60,25 @@ void note_loss(Registry & registry, const Destination & to, uint64_t number) noe
   request_resyncs(to);
 }
 
-/// Turn by turn. A record that is handed over meanwhile, for a slot already passed, is in the pipe.
+/// A record that is handed over meanwhile, for a slot already passed, is in the pipe.
 HandedBefore HandedBefore::look(Registry & registry, Transfer kind, uint32_t cluster) {
   HandedBefore before;
-  for (uint32_t slot = 0; slot < registry.endpoints().high_water();) {
-    const Registry::Lock lock(registry);  // prevents freeing of topic DSMs
-    for (Turn turn; !turn.is_over() && slot < registry.endpoints().high_water(); ++slot) {
-      turn.spend(before.look_at(registry, slot, kind, cluster) ? steps_of_a_publisher : 1);
+  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
+    if (registry.endpoints()[slot].transfer == kind) {
+      const Registry::Lock lock(registry);  // prevents freeing of topic DSMs
+      before.look_at(registry, slot, kind, cluster);
     }
   }
   return before;
 }
 
-/// Returns false if the slot holds no publisher whose landings this mover fills.
-bool HandedBefore::look_at(Registry & registry, uint32_t slot, Transfer kind, uint32_t cluster) {
+void HandedBefore::look_at(Registry & registry, uint32_t slot, Transfer kind, uint32_t cluster) {
   const EndpointEntry & entry = registry.endpoints()[slot];
   const bool is_message = kind == Transfer::message;
   if (
     entry.kind != EndpointKind::publisher || entry.transfer != kind ||
     !(is_message || entry.cluster == cluster) || !has_memory(entry.slot.state.load())) {
-    return false;
+    return;
   }
   EmcosMessage announcement{};
   announcement.kind = EmcosMessageKind::publish;
@@ -105,7 +101,6 @@ bool HandedBefore::look_at(Registry & registry, uint32_t slot, Transfer kind, ui
       }
     }
   }
-  return true;
 }
 
 void HandedBefore::give_up_missing(Registry & registry, std::atomic<uint64_t> & phase) noexcept {

@@ -45,7 +45,8 @@ public:
   void give_up_missing(Registry & registry, std::atomic<uint64_t> & phase) noexcept;
 
 private:
-  bool look_at(Registry & registry, uint32_t slot, Transfer kind, uint32_t cluster);
+  /// Has an effect if the slot holds a publisher whose landings this mover fills.
+  void look_at(Registry & registry, uint32_t slot, Transfer kind, uint32_t cluster);
 
   struct Entry {
     EmcosMessage announcement;

@@ -1,7 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/notification/receive_thread.hpp"
 
-#include "transport/matching/turn.hpp"
 #include "transport/notification/announced.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/odd_phase.hpp"
@@ -9,8 +8,6 @@
 
 namespace manycore {
 namespace {
-
-constexpr uint64_t steps_of_a_subscription = 3;
 
 /// Entry of the only reader to notify, or nullptr if it is not where the message says: the table
 /// changed since the message was sent, or there are several readers.
@@ -31,31 +28,28 @@ ReceiveThread::ReceiveThread(Registry & registry, uint32_t cluster)
   cluster_.header().phase.store(0, std::memory_order_seq_cst);
 }
 
-/// Asks all subscriptions of the cluster to resync, turn by turn. A subscription that is created
-/// meanwhile in a slot already passed misses no message: the lost messages had been published
-/// before it was matched.
+/// Asks all subscriptions of the cluster to resync. A subscription that is created meanwhile in a
+/// slot already passed misses no message: the lost messages had been published before it was
+/// matched.
 void ReceiveThread::recover() {
-  for (uint32_t slot = 0; slot < registry_.endpoints().high_water();) {
-    const Registry::Lock lock(registry_);  // prevents freeing of subscriptions
-    for (Turn turn; !turn.is_over() && slot < registry_.endpoints().high_water(); ++slot) {
-      turn.spend(request_resync(slot) ? steps_of_a_subscription : 1);
+  for (uint32_t slot = 0; slot < registry_.endpoints().high_water(); ++slot) {
+    if (registry_.endpoints()[slot].cluster == cluster_.id()) {
+      const Registry::Lock lock(registry_);  // prevents freeing of subscriptions
+      request_resync(slot);
     }
   }
   wake_cluster();
 }
 
-/// Returns false if the slot holds no live subscription of this cluster.
-bool ReceiveThread::request_resync(uint32_t slot) noexcept {
-  EndpointEntry & endpoint = registry_.endpoints()[slot];
-  if (
-    !registry_.endpoints().is_live(slot) || endpoint.cluster != cluster_.id() ||
-    endpoint.kind != EndpointKind::subscription) {
-    return false;
-  }
-  if (auto * const header = cluster_.find<SubscriptionHeader>(endpoint.block.offset())) {
+void ReceiveThread::request_resync(uint32_t slot) noexcept {
+  const EndpointEntry & endpoint = registry_.endpoints()[slot];
+  auto * const header = registry_.endpoints().is_live(slot) && endpoint.cluster == cluster_.id() &&
+                            endpoint.kind == EndpointKind::subscription
+                          ? cluster_.find<SubscriptionHeader>(endpoint.block.offset())
+                          : nullptr;
+  if (header != nullptr) {
     header->resync.store(1, std::memory_order_seq_cst);
   }
-  return true;
 }
 
 /// All writers write whole messages atomically, so a partial message or an unknown kind was written

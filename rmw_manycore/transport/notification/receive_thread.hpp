@@ -39,7 +39,7 @@ private:
     const ReaderEntry & entry, const TopicDsmHeader & dsm, uint64_t generation,
     const EmcosMessage & message) noexcept;
   void push(SegmentRef subscription, const Hint & hint, const EmcosMessage & message) noexcept;
-  bool request_resync(uint32_t slot) noexcept;
+  void request_resync(uint32_t slot) noexcept;
   bool take_overflow() noexcept;
   void wake_cluster() noexcept;
 

@@ -282,34 +282,31 @@ void Cluster::back(uint64_t offset, uint64_t length) const {
   memory_.reserve_and_populate(offset, granules_of(length) * granule_bytes_);
 }
 
-void Cluster::free(uint64_t offset, uint64_t length) noexcept { free_part(offset, length, length); }
-
-void Cluster::free_part(uint64_t offset, uint64_t length, uint64_t block_bytes) noexcept {
-  ClusterHeader & head = header();
-  const uint64_t count = granules_of(length);
-  if (!contains(offset, count * granule_bytes_)) {
-    return;
+void Cluster::free(uint64_t offset, uint64_t length) noexcept {
+  if (makes_hole(length)) {
+    punch(offset, length);
   }
-  note_freed(offset / granule_bytes_, count);
-  head.used_bytes.fetch_sub(count * granule_bytes_, std::memory_order_relaxed);
-  if (granules_of(block_bytes) * granule_bytes_ >= min_hole_bytes) {
-    memory_.release(offset, count * granule_bytes_);
+  unmark(offset, length);
+}
+
+bool Cluster::makes_hole(uint64_t length) const noexcept {
+  return granules_of(length) * granule_bytes_ >= min_hole_bytes;
+}
+
+void Cluster::punch(uint64_t offset, uint64_t length) noexcept {
+  const uint64_t bytes = granules_of(length) * granule_bytes_;
+  if (contains(offset, bytes)) {
+    memory_.release(offset, bytes);
     backed_ahead_from_.store(UINT64_MAX, std::memory_order_relaxed);  // may be a hole now
   }
 }
 
-Cluster::LastPiece Cluster::last_piece(
-  uint64_t offset, uint64_t length, uint32_t kept_pieces) const noexcept {
-  const uint64_t left = kept_bytes(offset, length, kept_pieces);
-  const uint64_t from = contains(offset, left) ? last_piece_of(offset, left) : offset;
-  const uint64_t kept = from == offset ? 0 : from / freed_piece_bytes;
-  return {from, offset + left - from, static_cast<uint32_t>(kept)};
-}
-
-uint32_t Cluster::free_last_piece(uint64_t offset, uint64_t length, uint32_t kept_pieces) noexcept {
-  const LastPiece piece = last_piece(offset, length, kept_pieces);
-  free_part(piece.offset, piece.length, length);
-  return piece.kept_pieces;
+void Cluster::unmark(uint64_t offset, uint64_t length) noexcept {
+  const uint64_t count = granules_of(length);
+  if (contains(offset, count * granule_bytes_)) {
+    note_freed(offset / granule_bytes_, count);
+    header().used_bytes.fetch_sub(count * granule_bytes_, std::memory_order_relaxed);
+  }
 }
 
 void Cluster::wake_reaper(uint32_t process) const noexcept {
@@ -356,6 +353,10 @@ void Cluster::forget_allocations() noexcept {
   note_allocated(0, own);
   head.used_bytes.store(own * granule_bytes_, std::memory_order_relaxed);
   head.charged_bytes.store(0, std::memory_order_relaxed);
+}
+
+bool Cluster::is_allocated(uint64_t offset) const noexcept {
+  return contains(offset, granule_bytes_) && granule_used(offset / granule_bytes_);
 }
 
 void Cluster::mark_allocated(uint64_t offset, uint64_t length) noexcept {

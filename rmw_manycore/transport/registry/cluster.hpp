@@ -103,18 +103,13 @@ public:
   /// Frees SMEM, and returns the memory of larger blocks to the system. The caller holds the
   /// registry lock. The range must not be accessed until it is allocated again.
   void free(uint64_t offset, uint64_t length) noexcept;
-  /// As free(), for a part of a block, large or not.
-  void free_part(uint64_t offset, uint64_t length, uint64_t block_bytes) noexcept;
-  /// A piece to free, and what `kept_pieces` of its block is without it: 0 when no piece is left.
-  struct LastPiece {
-    uint64_t offset;
-    uint64_t length;
-    uint32_t kept_pieces;
-  };
-  /// The last piece that is left of a block of `length` bytes; `kept_pieces` as in GenerationEntry.
-  LastPiece last_piece(uint64_t offset, uint64_t length, uint32_t kept_pieces) const noexcept;
-  /// Frees it. Returns the new `kept_pieces`.
-  uint32_t free_last_piece(uint64_t offset, uint64_t length, uint32_t kept_pieces) noexcept;
+  /// True for a block whose memory goes back to the system.
+  bool makes_hole(uint64_t length) const noexcept;
+  /// First half of free() for a block that makes a hole. Needs no lock; takes time in proportion to
+  /// `length`.
+  void punch(uint64_t offset, uint64_t length) noexcept;
+  /// Second half of free(). The caller holds the registry lock.
+  void unmark(uint64_t offset, uint64_t length) noexcept;
   /// Changes the bytes that a process has charged from `before` to `after`. The caller holds the
   /// registry lock. Throws Error{no_space}.
   void charge(uint64_t before, uint64_t after);
@@ -127,6 +122,7 @@ public:
   /// blocks.
   void forget_allocations() noexcept;
   void mark_allocated(uint64_t offset, uint64_t length) noexcept;
+  bool is_allocated(uint64_t offset) const noexcept;
   void mark_charged(uint64_t length) noexcept;
 
   /// False if the pipe is full.

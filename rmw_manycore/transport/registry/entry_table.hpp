@@ -60,17 +60,14 @@ public:
     uint64_t offset;
     uint64_t bytes;
   };
-  /// Takes the last block off the table. The caller holds the registry lock.
-  std::optional<Block> take_last() const noexcept {
-    uint32_t count = 0;
-    while (count < max_entry_blocks && entries_of(count) != nullptr) {
-      ++count;
-    }
-    if (count == 0) {
-      return std::nullopt;
-    }
-    return Block{blocks_.offsets[count - 1].exchange(0), bytes_of(count - 1)};
+  std::optional<Block> last() const noexcept {
+    const uint32_t count = block_count();
+    return count == 0
+             ? std::nullopt
+             : std::optional(Block{blocks_.offsets[count - 1].load(), bytes_of(count - 1)});
   }
+  /// Takes the last block off the table. The caller holds the registry lock.
+  void drop_last() const noexcept { blocks_.offsets[block_count() - 1].store(0); }
 
   /// Calls `visit(offset, bytes)` for each block.
   template<typename Visit>
@@ -102,11 +99,15 @@ private:
       ErrorCode::corrupt, "cluster " + std::to_string(cluster_.id()) +
                             " is damaged; stop the platform's nodes and run 'manycore clean'");
   }
-  uint32_t next_block() const {
-    uint32_t block = 0;
-    while (block < max_entry_blocks && entries_of(block) != nullptr) {
-      ++block;
+  uint32_t block_count() const noexcept {
+    uint32_t count = 0;
+    while (count < max_entry_blocks && entries_of(count) != nullptr) {
+      ++count;
     }
+    return count;
+  }
+  uint32_t next_block() const {
+    const uint32_t block = block_count();
     if (block == max_entry_blocks || blocks_.offsets[block].load() != 0) {
       throw damaged();
     }

@@ -67,7 +67,7 @@ std::vector<EndpointInfo> all_endpoints(Registry & registry) {
 
 std::vector<EndpointInfo> chained_endpoints(Registry & registry, const std::string & topic) {
   std::vector<EndpointInfo> all;
-  registry.for_each_of_bucket(topic.c_str(), [&](uint32_t slot) {
+  registry.for_each_of_bucket(topic.c_str(), Registry::Chain::live, [&](uint32_t slot) {
     append_live(registry.endpoints(), slot, all, [&](uint32_t, const EndpointEntry & entry) {
       return describe(registry, entry);
     });

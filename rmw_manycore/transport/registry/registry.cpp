@@ -100,11 +100,10 @@ void Registry::create(
   for (LockSeat & seat : header.seats) {
     seat.occupied.initialize();
   }
-  header.match_in_hand.publisher.store(nothing);
-  header.match_in_hand.subscription.store(nothing);
   header.topic_count = static_cast<uint32_t>(topics.size());
-  for (std::atomic<uint32_t> & bucket : header.topic_buckets) {
-    bucket.store(nothing, std::memory_order_relaxed);
+  for (uint32_t i = 0; i < topic_bucket_count; ++i) {
+    header.topic_buckets[i].store(nothing, std::memory_order_relaxed);
+    header.orphan_buckets[i].store(nothing, std::memory_order_relaxed);
   }
   memory.reserve(topic_table_offset, std::max<size_t>(topics.size(), 1) * sizeof(TopicEntry));
   for (size_t i = 0; i < topics.size(); ++i) {
@@ -217,8 +216,11 @@ const TopicEntry * Registry::find_topic(const std::string & name) const noexcept
   return nullptr;
 }
 
-std::atomic<uint32_t> & Registry::bucket_of(uint64_t topic_hash) const noexcept {
-  return header().topic_buckets[topic_hash % topic_bucket_count];
+std::atomic<uint32_t> & Registry::bucket_of(uint64_t topic_hash, Chain chain) const noexcept {
+  RegistryHeader & head = header();
+  return (
+    chain == Chain::live ? head.topic_buckets
+                         : head.orphan_buckets)[topic_hash % topic_bucket_count];
 }
 
 // The lock excludes concurrent changes of chains. Graph reads without the lock check afterwards
@@ -228,9 +230,9 @@ constexpr auto chained = std::memory_order_relaxed;
 
 /// At each instruction a chain holds its old or its new content. If this process dies in between,
 /// only `previous_of_topic` and what repair() rebuilds may be wrong.
-void Registry::link_endpoint(uint32_t slot) noexcept {
+void Registry::link_endpoint(uint32_t slot, Chain chain) noexcept {
   EndpointEntry & entry = endpoints_[slot];
-  std::atomic<uint32_t> & bucket = bucket_of(entry.topic_hash);
+  std::atomic<uint32_t> & bucket = bucket_of(entry.topic_hash, chain);
   const uint32_t next = bucket.load(chained);
   entry.previous_of_topic = nothing;
   // Release: a walk that loads the link also sees the slot's new incarnation.
@@ -243,9 +245,9 @@ void Registry::link_endpoint(uint32_t slot) noexcept {
 
 /// The link that leads to an endpoint in its chain. Searches the chain if `previous_of_topic` is
 /// damaged.
-std::atomic<uint32_t> * Registry::link_to(uint32_t slot) noexcept {
+std::atomic<uint32_t> * Registry::link_to(uint32_t slot, Chain chain) noexcept {
   EndpointEntry & entry = endpoints_[slot];
-  std::atomic<uint32_t> * link = &bucket_of(entry.topic_hash);
+  std::atomic<uint32_t> * link = &bucket_of(entry.topic_hash, chain);
   if (entry.previous_of_topic < endpoints_.high_water()) {
     std::atomic<uint32_t> & next = endpoints_[entry.previous_of_topic].next_of_topic;
     if (next.load(chained) == slot) {
@@ -262,9 +264,9 @@ std::atomic<uint32_t> * Registry::link_to(uint32_t slot) noexcept {
   return linked == slot ? link : nullptr;
 }
 
-void Registry::unlink_endpoint(uint32_t slot) noexcept {
+void Registry::unlink_endpoint(uint32_t slot, Chain chain) noexcept {
   EndpointEntry & entry = endpoints_[slot];
-  std::atomic<uint32_t> * const link = link_to(slot);
+  std::atomic<uint32_t> * const link = link_to(slot, chain);
   if (link == nullptr) {
     return;
   }
@@ -315,8 +317,8 @@ void Registry::for_each_older(
 }
 
 void Registry::for_each_of_bucket(
-  const char * topic, const std::function<void(uint32_t)> & visit) const {
-  uint32_t slot = bucket_of(hash_name(topic)).load(chained);
+  const char * topic, Chain chain, const std::function<void(uint32_t)> & visit) const {
+  uint32_t slot = bucket_of(hash_name(topic), chain).load(chained);
   for (uint32_t i = 0; slot < endpoints_.high_water() && i < endpoint_capacity; ++i) {
     const uint32_t next = endpoints_[slot].next_of_topic.load(chained);
     visit(slot);

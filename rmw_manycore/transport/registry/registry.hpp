@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -118,16 +119,21 @@ public:
     Lock(const Lock &) = delete;
     Lock & operator=(const Lock &) = delete;
 
-    /// True if a thread may be waiting until this one gives the lock back.
-    bool is_waited_for() const noexcept { return registry_.mutex_.is_waited_for(taken_.seat); }
-
   private:
     Registry & registry_;
     RegistryMutex::Taken taken_;
   };
 
-  /// Takes the lock as the holder of a line; see RegistryMutex::sit().
-  void sit(uint32_t line) noexcept { mutex_.sit(line); }
+  /// Takes the lock as the holder of a line, whose hand is then this process's; see
+  /// RegistryMutex::sit().
+  void sit(uint32_t line) noexcept {
+    line_ = line;
+    mutex_.sit(line);
+  }
+  /// Nullptr in a process that holds no line.
+  Hand * own_hand() noexcept { return line_ == nothing ? nullptr : &header().hands[line_]; }
+  /// Held by the thread of this process that uses the hand.
+  std::mutex & hand_mutex() noexcept { return hand_mutex_; }
   /// Time to wait for the lock when a process removes its many objects at its end: short once the
   /// lock timed out, until it was acquired again.
   long parting_wait_ns() const noexcept { return mutex_.parting_wait_ns(); }
@@ -161,12 +167,16 @@ public:
   /// Line of the topic table, or nullptr.
   const TopicEntry * find_topic(const std::string & name) const noexcept;
 
-  /// Chains of endpoints by topic, from the youngest to the oldest. The caller holds the lock.
-  void link_endpoint(uint32_t slot) noexcept;
-  void unlink_endpoint(uint32_t slot) noexcept;
+  /// Chains of endpoints by topic, from the last one linked to the first. An endpoint is in one of
+  /// them: publishers that are gone are among the `orphans` until their memory is unreachable.
+  enum class Chain { live, orphans };
+  /// The caller holds the lock.
+  void link_endpoint(uint32_t slot, Chain chain) noexcept;
+  void unlink_endpoint(uint32_t slot, Chain chain) noexcept;
   /// Visits the slots in a topic's bucket, which other topics may share. Without the lock, a
   /// concurrent change may lead the walk to other buckets, but not out of the table.
-  void for_each_of_bucket(const char * topic, const std::function<void(uint32_t)> & visit) const;
+  void for_each_of_bucket(
+    const char * topic, Chain chain, const std::function<void(uint32_t)> & visit) const;
 
   /// Calls `visit(slot, incarnation)` for each older endpoint in the bucket of a live endpoint;
   /// other topics may share the bucket. Needs no lock. Endpoints that leave
@@ -178,8 +188,8 @@ public:
 
 private:
   friend class Lock;
-  std::atomic<uint32_t> & bucket_of(uint64_t topic_hash) const noexcept;
-  std::atomic<uint32_t> * link_to(uint32_t slot) noexcept;
+  std::atomic<uint32_t> & bucket_of(uint64_t topic_hash, Chain chain) const noexcept;
+  std::atomic<uint32_t> * link_to(uint32_t slot, Chain chain) noexcept;
   std::optional<uint32_t> next_of(uint32_t slot, uint32_t incarnation) const noexcept;
   /// Takes the lock by `take`, and repairs what a former owner left incomplete.
   RegistryMutex::Taken lock_whole(const std::function<RegistryMutex::Taken()> & take);
@@ -191,6 +201,8 @@ private:
   /// Throws ClusterUnmappable before anything is changed.
   void repair();
   void mark_blocks_of(EndpointEntry & entry) noexcept;
+  void mark_blocks_in_hands() noexcept;
+  void link_all_endpoints();
 
   PlatformPaths paths_;
   SharedMemory memory_;
@@ -201,6 +213,8 @@ private:
   Clusters clusters_;
   Tracer tracer_;
   RegistryMutex mutex_;
+  uint32_t line_ = nothing;
+  std::mutex hand_mutex_;
 };
 
 /// FNV-1a; equal for equal names in all processes.

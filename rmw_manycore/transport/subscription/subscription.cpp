@@ -2,6 +2,7 @@
 #include "transport/subscription/subscription.hpp"
 
 #include <utility>
+#include <vector>
 
 #include "platform/clock.hpp"
 #include "transport/matching/leaving.hpp"
@@ -36,6 +37,25 @@ private:
   const uint64_t before_;
 };
 
+/// Frees, at its end, topic DSMs that waited for this subscription only.
+class FinishedPublishers {
+public:
+  explicit FinishedPublishers(Subscription::Impl & impl) noexcept : impl_(impl) {}
+  ~FinishedPublishers() {
+    for (const uint32_t slot : slots_) {
+      impl_.sweep(slot);
+    }
+  }
+  FinishedPublishers(const FinishedPublishers &) = delete;
+  FinishedPublishers & operator=(const FinishedPublishers &) = delete;
+
+  void add(uint32_t slot) { slots_.push_back(slot); }
+
+private:
+  Subscription::Impl & impl_;
+  std::vector<uint32_t> slots_;
+};
+
 }  // namespace
 
 Subscription::Subscription(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -63,20 +83,27 @@ Watchers & Subscription::watchers() noexcept { return impl_->header.watchers; }
 std::optional<Claim> Subscription::claim() {
   Impl & impl = *impl_;
   impl.membership.require();
+  FinishedPublishers finished(impl);
   std::unique_lock<HandoverMutex> lock(impl.mutex);
   const LossNotice losses(impl);
   while (const auto candidate = impl.finder.next()) {
     Source & source = *candidate->source;
     Source::View view;
-    switch (source.claim(candidate->number, view)) {
+    // Before the claim, after which the topic DSM may be freed.
+    const uint32_t publisher = source.publisher_slot();
+    const uint64_t traced = trace_endpoint(publisher, source.publisher_incarnation());
+    const Source::Claimed claimed = source.claim(candidate->number, view);
+    if (claimed.is_finished) {
+      finished.add(publisher);
+    }
+    switch (claimed.result) {
       case Source::ClaimResult::gone:
         impl.counts.suspect_losses();
         impl.counts.count_lost_replies(1);
         continue;
       case Source::ClaimResult::expired:
         impl.counts.count_expired();
-        impl.registry.tracer().note(
-          TraceKind::expired, impl.slot, candidate->number, endpoint_in(source.publisher()));
+        impl.registry.tracer().note(TraceKind::expired, impl.slot, candidate->number, traced);
         continue;
       case Source::ClaimResult::not_ours:
         continue;

@@ -19,11 +19,11 @@ uint32_t depth_of(const Qos & qos) noexcept {
   return qos.history == History::keep_all ? keep_all_capacity : qos.depth;
 }
 
-SubscriptionHeader & cleared_block(Cluster & cluster, uint64_t bytes, SpareBlock & spare) {
-  if (!spare.fits(SpareUse::queue, cluster.id(), bytes)) {
+SubscriptionHeader & cleared_block(Cluster & cluster, uint64_t bytes, BlockInHand * hand) {
+  if (hand == nullptr) {
     return cluster.allocate_cleared<SubscriptionHeader>(bytes);
   }
-  auto * const made = cluster.find<SubscriptionHeader>(spare.take().offset(), bytes);
+  auto * const made = cluster.find<SubscriptionHeader>(hand->take().offset(), bytes);
   if (made == nullptr) {
     throw Error(
       ErrorCode::corrupt, "the registry is damaged; stop the nodes, run 'manycore clean'");
@@ -37,12 +37,17 @@ uint64_t bytes_for(const Qos & qos) noexcept {
   return subscription_block_bytes(log2_at_least(depth_of(qos)));
 }
 
-SubscriptionHeader & create(Registry & registry, uint32_t endpoint_slot, SpareBlock & spare) {
+NeededBlock block_for(const Qos & qos, uint32_t cluster) noexcept {
+  const uint64_t bytes = bytes_for(qos);
+  return {cluster, bytes, bytes, false};
+}
+
+SubscriptionHeader & create(Registry & registry, uint32_t endpoint_slot, BlockInHand * hand) {
   EndpointEntry & entry = registry.endpoints()[endpoint_slot];
   Cluster & cluster = registry.clusters().at(entry.cluster);
   const uint32_t depth = depth_of(entry.qos);
   const uint32_t log2 = log2_at_least(depth);
-  SubscriptionHeader & header = cleared_block(cluster, bytes_for(entry.qos), spare);
+  SubscriptionHeader & header = cleared_block(cluster, bytes_for(entry.qos), hand);
   header.endpoint.store(endpoint_slot);
   header.incarnation.store(entry.slot.incarnation);
   header.process.store(entry.process);

@@ -10,7 +10,6 @@ void Generation::reserve(
   const uint64_t offset = cluster.reserve(extent_bytes(data_bytes, count));
   entry.descriptor_count.store(static_cast<uint32_t>(count), std::memory_order_relaxed);
   entry.data_bytes.store(data_bytes, std::memory_order_relaxed);
-  entry.kept_pieces.store(0, std::memory_order_relaxed);
   entry.offset.store(offset, std::memory_order_release);
 }
 
@@ -23,19 +22,10 @@ void Generation::open(const Cluster & cluster, GenerationEntry & entry, uint64_t
   entry.first.store(first, std::memory_order_release);
 }
 
-/// Frees the last piece that is left, so that one store to the entry suffices per piece. The store
-/// comes after the piece was freed: if this process dies in between, repair marks the piece as used
-/// again, because the entry still holds it.
-bool Generation::free_some(Cluster & cluster, GenerationEntry & entry) noexcept {
-  const uint32_t kept_pieces = cluster.free_last_piece(
-    entry.offset.load(std::memory_order_relaxed), entry.whole_bytes(),
-    entry.kept_pieces.load(std::memory_order_relaxed));
-  if (kept_pieces != 0) {
-    entry.kept_pieces.store(kept_pieces, std::memory_order_release);
-    return false;
-  }
+void Generation::take_up(
+  const Cluster & cluster, GenerationEntry & entry, BlockInHand & hand) noexcept {
+  hand.take_up(SegmentRef::make(cluster.id(), entry.offset.load()), entry.extent_bytes());
   entry.offset.store(0, std::memory_order_release);
-  return true;
 }
 
 Generation Generation::view(const Cluster & cluster, GenerationEntry & entry) noexcept {

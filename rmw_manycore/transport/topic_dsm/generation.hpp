@@ -2,6 +2,7 @@
 #pragma once
 
 #include "transport/layout/topic_dsm_layout.hpp"
+#include "transport/registry/block_in_hand.hpp"
 #include "transport/registry/cluster.hpp"
 
 namespace manycore {
@@ -46,10 +47,9 @@ struct Generation {
   /// Backs the SMEM with memory, then opens the generation to readers. Needs no lock. Throws
   /// Error{no_space}.
   static void open(const Cluster & cluster, GenerationEntry & entry, uint64_t first);
-  /// Frees one piece of the generation's SMEM and the memory behind it. Returns true when no piece
-  /// is left. The caller holds the registry lock and releases it between pieces. The entry always
-  /// describes what is left, so that any process can continue.
-  static bool free_some(Cluster & cluster, GenerationEntry & entry) noexcept;
+  /// Takes the generation's SMEM up to be freed. The caller holds the registry lock.
+  static void take_up(
+    const Cluster & cluster, GenerationEntry & entry, BlockInHand & hand) noexcept;
   static Generation view(const Cluster & cluster, GenerationEntry & entry) noexcept;
 };
 

@@ -106,17 +106,14 @@ bool Source::may_look() const noexcept {
 /// the publisher sees the claim and leaves the bytes alone, or this reader sees that the number is
 /// gone. The same holds for revoke() and the state of the source: the topic DSM is accessed only if
 /// the state is still `active` after the store.
-Source::ClaimResult Source::claim(uint64_t number, View & view) noexcept {
+Source::Claimed Source::claim(uint64_t number, View & view) noexcept {
   entry_->reading.store(number, std::memory_order_seq_cst);
   if (!may_look()) {
     entry_->reading.store(no_record, std::memory_order_release);
-    return ClaimResult::not_ours;
+    return {ClaimResult::not_ours, false};
   }
   const ClaimResult result = look_at(number, view);
-  if (result != ClaimResult::claimed) {
-    release(number);
-  }
-  return result;
+  return {result, result != ClaimResult::claimed && release(number)};
 }
 
 Source::ClaimResult Source::look_at(uint64_t number, View & view) noexcept {

@@ -45,8 +45,12 @@ public:
     const RecordDescriptor * record = nullptr;
     const uint8_t * data = nullptr;
   };
+  struct Claimed {
+    ClaimResult result;
+    bool is_finished;  ///< as release() returns
+  };
   /// After `claimed` the caller must call release(); every other result has released already.
-  ClaimResult claim(uint64_t number, View & view) noexcept;
+  Claimed claim(uint64_t number, View & view) noexcept;
   /// Ends a claim: the reader is done with all records up to `number`. True if the publisher is
   /// gone and its topic DSM may have been waiting for this reader only.
   bool release(uint64_t number) noexcept;
@@ -77,6 +81,9 @@ public:
   uint32_t publisher_process() const noexcept { return dsm_->process; }
   uint32_t publisher_slot() const noexcept {
     return entry_->topic_dsm_endpoint.load(std::memory_order_relaxed);
+  }
+  uint32_t publisher_incarnation() const noexcept {
+    return entry_->topic_dsm_incarnation.load(std::memory_order_relaxed);
   }
 
 private:

@@ -13,7 +13,6 @@ namespace {
 constexpr uint64_t descriptor_limit = 1 << 16;
 constexpr uint64_t mebibyte = 1 << 20;
 constexpr uint64_t many_bytes = 16 * mebibyte;
-constexpr int pieces_per_message = 8;               ///< freed: about 0.25 ms
 constexpr uint64_t min_shrinking_bytes = 16 << 10;  ///< smaller rings do not shrink
 
 uint64_t half_as_much_again(uint64_t bytes) { return align_up(bytes * 3 / 2, record_alignment); }
@@ -60,14 +59,10 @@ bool TopicDsmWriter::retire(Generation & old) {
   return old.is_unread;
 }
 
-/// Frees some pieces per message: returns the SMEM to the cluster and the memory to the system.
-/// Frees each piece under the registry lock: a killed process releases the lock only after its
-/// system call has completed, so it cannot punch a hole in memory that meanwhile belongs to another
-/// process.
 void TopicDsmWriter::free_old_generations() noexcept {
   try {
     for (size_t i = 0; i < old_.size();) {
-      if (retire(old_[i]) && free_some_of(*old_[i].entry)) {
+      if (retire(old_[i]) && free_generation(*old_[i].entry)) {
         old_.erase(old_.begin() + static_cast<ptrdiff_t>(i));
       } else {
         ++i;
@@ -78,16 +73,14 @@ void TopicDsmWriter::free_old_generations() noexcept {
   }
 }
 
-/// Stops when another process waits for the registry lock.
-bool TopicDsmWriter::free_some_of(GenerationEntry & entry) {
-  bool is_free = false;
-  bool is_waited_for = false;
-  for (int piece = 0; piece < pieces_per_message && !is_free && !is_waited_for; ++piece) {
+/// False while another thread of this process makes or frees a block.
+bool TopicDsmWriter::free_generation(GenerationEntry & entry) {
+  std::optional<BlockInHand> hand = BlockInHand::try_make(registry_);
+  if (hand) {
     const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
-    is_free = Generation::free_some(cluster_, entry);
-    is_waited_for = lock.is_waited_for();
+    Generation::take_up(cluster_, entry, *hand);
   }
-  return is_free;
+  return hand.has_value();
 }
 
 uint64_t TopicDsmWriter::data_limit() const noexcept {
@@ -139,14 +132,14 @@ void TopicDsmWriter::open_generation(GenerationEntry & entry) {
 /// If the lock is not available, the entry is kept as an old generation without records.
 void TopicDsmWriter::free_unopened(GenerationEntry & entry) {
   try {
-    for (bool is_free = false; !is_free;) {
-      const Registry::Lock lock(registry_, Registry::Lock::short_wait_ns);
-      is_free = Generation::free_some(cluster_, entry);
+    if (free_generation(entry)) {
+      return;
     }
   } catch (const Error &) {
-    old_.push_back(Generation::view(cluster_, entry));
-    old_.back().first = next_number_;
+    // Another process holds the registry lock.
   }
+  old_.push_back(Generation::view(cluster_, entry));
+  old_.back().first = next_number_;
 }
 
 bool TopicDsmWriter::grow(uint64_t data_bytes, uint64_t descriptor_count) {

@@ -65,8 +65,8 @@ private:
   bool drain(Generation & old);
   bool retire(Generation & old);
   void free_old_generations() noexcept;
-  /// Throws if another process holds the registry lock.
-  bool free_some_of(GenerationEntry & entry);
+  /// Throws Error{timeout} if another process holds the registry lock.
+  bool free_generation(GenerationEntry & entry);
   void free_unopened(GenerationEntry & entry);
   /// Makes room where a wanted record lies: grows the ring, waits (RELIABLE + KEEP_ALL) or
   /// overwrites.

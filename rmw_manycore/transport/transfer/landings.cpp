@@ -21,17 +21,20 @@ void name_publisher(LandingHeader & landing, const TopicDsmHeader & dsm) noexcep
   landing.magic.store(landing_magic, std::memory_order_release);
 }
 
-/// A retired landing that is not being freed yet, or nullptr.
-LandingHeader * whole_retired(
+LandingHeader * retired_landing(
   const LandingTable & table, const TopicDsmHeader & dsm, const Cluster & receiver) noexcept {
   const uint64_t offset = table.retired[receiver.id() - 1].load();
-  const bool is_whole = offset != 0 && table.kept_pieces[receiver.id() - 1].load() == 0;
-  return is_whole ? receiver.find<LandingHeader>(offset, landing_bytes(dsm)) : nullptr;
+  return offset != 0 ? receiver.find<LandingHeader>(offset, landing_bytes(dsm)) : nullptr;
+}
+
+NeededBlock block_of_landing(const TopicDsmHeader & dsm, const Cluster & receiver) noexcept {
+  const uint64_t bytes = landing_bytes(dsm);
+  const uint64_t data_bytes = dsm.generations[0].data_bytes.load(std::memory_order_relaxed);
+  return {receiver.id(), bytes, bytes - data_bytes, true};
 }
 
 void retire(LandingTable & table, uint32_t receiver) noexcept {
   if (table.landings[receiver - 1].load() != 0) {
-    table.kept_pieces[receiver - 1].store(0);
     table.retired[receiver - 1].store(table.landings[receiver - 1].load());
     // Dekker with publisher and movers: each stores its phase before it looks for the landing.
     table.landings[receiver - 1].store(0, std::memory_order_seq_cst);
@@ -40,42 +43,41 @@ void retire(LandingTable & table, uint32_t receiver) noexcept {
 
 }  // namespace
 
-Place find_place(
+std::optional<NeededBlock> find_place(
   Registry & registry, const EndpointEntry & publisher, TopicDsmHeader & dsm,
-  const Cluster & receiver, const SpareBlock & spare) {
+  const Cluster & receiver, const BlockInHand * hand) {
   const LandingTable * const table = landing_table(registry.clusters().at(publisher.cluster), dsm);
   if (
     table == nullptr || receiver.id() == publisher.cluster ||
     table->landings[receiver.id() - 1].load() != 0) {
-    return Place::ready;
+    return std::nullopt;
   }
   if (publisher.transfer == Transfer::session) {
     require_free_session(registry, publisher, receiver.id());
   }
-  if (whole_retired(*table, dsm, receiver) != nullptr) {
-    return Place::ready;
-  }
-  if (table->retired[receiver.id() - 1].load() != 0) {
-    return Place::retiring;
-  }
-  const bool is_made = spare.fits(SpareUse::landing, receiver.id(), landing_bytes(dsm));
-  return is_made ? Place::ready : Place::missing;
+  const NeededBlock needed = block_of_landing(dsm, receiver);
+  const bool is_there =
+    retired_landing(*table, dsm, receiver) != nullptr || (hand != nullptr && hand->has(needed));
+  return is_there ? std::nullopt : std::optional(needed);
 }
 
 void attach(
-  const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver, SpareBlock & spare) {
+  const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver, BlockInHand * hand) {
   LandingTable * const table = landing_table(cluster, dsm);
   if (
     table == nullptr || receiver.id() == cluster.id() ||
     table->landings[receiver.id() - 1].load() != 0) {
     return;
   }
-  LandingHeader * landing = whole_retired(*table, dsm, receiver);
+  LandingHeader * landing = retired_landing(*table, dsm, receiver);
+  const bool is_new = landing == nullptr && hand != nullptr;
+  if (is_new) {
+    landing = receiver.find<LandingHeader>(hand->take().offset(), landing_bytes(dsm));
+  }
   if (landing == nullptr) {
-    landing = receiver.find<LandingHeader>(spare.take().offset(), landing_bytes(dsm));
-    if (landing == nullptr) {
-      return;  // damaged
-    }
+    return;  // damaged
+  }
+  if (is_new) {
     name_publisher(*landing, dsm);
   }
   begin(*landing, dsm.last.load(std::memory_order_seq_cst));
@@ -118,41 +120,23 @@ bool has_retired(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receive
          table->landings[receiver - 1].load() == 0;
 }
 
-/// The table forgets the piece before it is freed: a landing with a hole must never be taken up
-/// again. If this process dies in between, the next owner of the lock builds the map without the
-/// piece, whose memory stays until it is allocated again.
-bool free_piece_of_retired(
-  const Cluster & cluster, TopicDsmHeader & dsm, Cluster & receiver) noexcept {
-  LandingTable * const table = landing_table(cluster, dsm);
-  if (table == nullptr) {
-    return true;
+void take_up_retired(
+  const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver,
+  BlockInHand & hand) noexcept {
+  if (LandingTable * const table = landing_table(cluster, dsm)) {
+    std::atomic<uint64_t> & retired = table->retired[receiver.id() - 1];
+    hand.take_up(SegmentRef::make(receiver.id(), retired.load()), landing_bytes(dsm));
+    retired.store(0);
   }
-  std::atomic<uint32_t> & kept_pieces = table->kept_pieces[receiver.id() - 1];
-  const Cluster::LastPiece piece = receiver.last_piece(
-    table->retired[receiver.id() - 1].load(), landing_bytes(dsm), kept_pieces.load());
-  const bool is_last = piece.kept_pieces == 0;
-  if (is_last) {
-    table->retired[receiver.id() - 1].store(0);
-  } else {
-    kept_pieces.store(piece.kept_pieces);
-  }
-  receiver.free_part(piece.offset, piece.length, landing_bytes(dsm));
-  return is_last;
 }
 
-bool is_being_freed(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept {
-  const LandingTable * const table = landing_table(cluster, dsm);
-  return table != nullptr && table->retired[receiver - 1].load() != 0 &&
-         table->kept_pieces[receiver - 1].load() != 0;
-}
-
-Cluster * retire_next(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {
+const Cluster * retire_next(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {
   LandingTable * const table = landing_table(cluster, dsm);
   for (uint32_t id = 1; table != nullptr && id <= max_clusters; ++id) {
     if (table->landings[id - 1].load() == 0 && table->retired[id - 1].load() == 0) {
       continue;
     }
-    if (Cluster * const receiver = registry.map_cluster(id)) {
+    if (const Cluster * const receiver = registry.map_cluster(id)) {
       retire(*table, id);
       return receiver;
     }
@@ -167,8 +151,7 @@ void mark_all(Clusters & clusters, const Cluster & cluster, TopicDsmHeader & dsm
     const uint64_t offset = used != 0 ? used : table->retired[id - 1].load();
     Cluster * const receiver = offset == 0 ? nullptr : clusters.find(id);
     if (receiver != nullptr) {
-      const uint32_t kept_pieces = used != 0 ? 0 : table->kept_pieces[id - 1].load();
-      receiver->mark_allocated(offset, kept_bytes(offset, landing_bytes(dsm), kept_pieces));
+      receiver->mark_allocated(offset, landing_bytes(dsm));
     }
   }
 }

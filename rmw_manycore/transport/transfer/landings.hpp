@@ -2,25 +2,23 @@
 #pragma once
 
 #include "transport/layout/topic_dsm_layout.hpp"
+#include "transport/registry/block_in_hand.hpp"
 #include "transport/registry/registry.hpp"
 
 /// Attaching and freeing landings. The caller holds the registry lock.
 namespace manycore::landings {
 
-/// Whether a publisher's records have a place in a receiving cluster. `retiring`: a former landing
-/// has to be freed first. `missing`: the endpoint that is being created has to make a landing of
-/// landing_bytes(), as its spare one.
-enum class Place { ready, retiring, missing };
-
-/// Before a subscription in `receiver` is matched. Always `ready` where records are not
-/// transferred. Throws Error{no_space} for a ninth session, with the names of the eight.
-Place find_place(
+/// Before a subscription in `receiver` is matched: the block that the creator of the endpoint has
+/// to have in hand, so that the publisher's records have a place there. Nothing where they have
+/// one, or are not transferred. `hand`: nullptr = empty. Throws Error{no_space} for a ninth
+/// session, with the names of the eight.
+std::optional<NeededBlock> find_place(
   Registry & registry, const EndpointEntry & publisher, TopicDsmHeader & dsm,
-  const Cluster & receiver, const SpareBlock & spare);
-/// Then, unless one is attached: attaches the retired landing or the spare one. `cluster`: that of
-/// the topic DSM.
+  const Cluster & receiver, const BlockInHand * hand);
+/// Then, unless one is attached: attaches the retired landing or the one in hand. `cluster`: that
+/// of the topic DSM.
 void attach(
-  const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver, SpareBlock & spare);
+  const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver, BlockInHand * hand);
 
 /// Once a reader in `receiver` is in the reader table.
 void count_reader(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept;
@@ -34,15 +32,14 @@ void retire_unread(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t recei
 
 /// True while a landing waits for its publisher and all movers to be out of their phases.
 bool has_retired(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept;
-/// True once a piece of it was freed: no thread follows references to it any more.
-bool is_being_freed(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept;
-/// Frees the last piece that is left of the retired landing. Returns true when no piece is left.
-bool free_piece_of_retired(
-  const Cluster & cluster, TopicDsmHeader & dsm, Cluster & receiver) noexcept;
+/// Takes the retired landing up to be freed: no thread follows references to it any more.
+void take_up_retired(
+  const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver,
+  BlockInHand & hand) noexcept;
 
 /// Retires any landing of a topic DSM to which no reference leads any more. Returns its cluster, or
 /// nullptr when none is left. Throws ClusterUnmappable.
-Cluster * retire_next(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm);
+const Cluster * retire_next(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm);
 
 /// Rebuilding the maps of the clusters.
 void mark_all(Clusters & clusters, const Cluster & cluster, TopicDsmHeader & dsm) noexcept;

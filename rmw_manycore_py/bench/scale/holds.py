@@ -7,7 +7,7 @@ from functools import partial
 
 from rmw_manycore_py.bench.contenders import INSIDE
 from rmw_manycore_py.bench.question import Run
-from rmw_manycore_py.bench.scale.common import along, at_count, on_curve
+from rmw_manycore_py.bench.scale.common import along, on_curve
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
 
@@ -17,13 +17,11 @@ OPERATIONS = {
     "create": "creating endpoints",
     "close_subscription": "closing subscriptions",
     "close_publisher": "closing publishers",
-    "sweep": "sweeping what they left",
     "close_deep": "closing a publisher with 1,000 untaken messages",
     "close_server": "closing a server with 1,000 untaken replies",
     "free_large": "freeing a topic DSM of 16 MiB",
     "create_queue": "creating a subscription of depth 65,535",
     "free_queue": "freeing a subscription of depth 65,535",
-    "sweep_deepest": "sweeping a publisher with 65,535 untaken messages",
     "reap": "reaping a killed process",
 }
 REPAIR = {"repair": "repairing after the owner of the lock was killed"}
@@ -31,7 +29,6 @@ CONTROL = {"control": "none, but arithmetic for 50 us, 10,000 times"}
 FIGURES = {HOLD: ("_p99", OPERATIONS), LONGEST: ("", OPERATIONS | REPAIR | CONTROL)}
 ENDPOINTS = (100, 200, 400, 800)
 CHANGES = 50
-MOST_US = 100
 
 
 def measure(run: Run) -> list[Result]:
@@ -65,8 +62,5 @@ def _curve(operation: str) -> str:
     return f"{INSIDE.name}, {(OPERATIONS | REPAIR | CONTROL)[operation]}"
 
 
-GOALS = tuple(
-    Goal(HOLD, at_count(_curve(operation), ENDPOINTS[-1], "endpoints"), "within", MOST_US)
-    for operation in OPERATIONS
-)
+GOALS: tuple[Goal, ...] = ()  # what counts is what others feel, not how long a hold is
 PLACEMENT = "holds: all endpoints on the first, what watches the lock on the second"

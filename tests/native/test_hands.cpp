@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// SMEM that is backed without the registry lock before it is used: landings, large blocks of reader
-// and source tables, and large queues.
+// SMEM in the hand of a process, so that it is backed and given back without the registry lock:
+// landings, large blocks of reader and source tables, large queues, and what endpoints leave.
 #include <doctest/doctest.h>
 
 #include <sys/mount.h>
@@ -14,8 +14,7 @@
 #include "private_shm.hpp"
 #include "stepped_child.hpp"
 #include "transfer_of_test.hpp"
-#include "transport/matching/closing.hpp"
-#include "transport/matching/sweeping.hpp"
+#include "transport/registry/block_in_hand.hpp"
 
 using namespace manycore;
 using transfer_of_test::by;
@@ -44,18 +43,11 @@ const Role subscribes_deep("subscribes_deep", [](Lines &, const Arguments & argu
   subscribe_by_steps(arguments, deep);
 });
 
-bool is_any_made(Registry & registry) {
-  for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
-    if (registry.processes()[slot].spare.ref.load() != 0) {
-      return true;
-    }
-  }
-  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
-    if (registry.endpoints()[slot].spare.ref.load() != 0) {
-      return true;
-    }
-  }
-  return false;
+bool is_any_in_hand(Registry & registry) {
+  const auto & hands = registry.header().hands;
+  return std::any_of(std::begin(hands), std::end(hands), [](const Hand & hand) {
+    return hand.block.load() != 0;
+  });
 }
 
 Profile profile_of(uint64_t smem_bytes) {
@@ -146,57 +138,72 @@ TEST_CASE("a block of a table, small or large, is backed with memory without the
   CHECK(backed.in_longest_hold == 0);
 }
 
-TEST_CASE("a large queue is backed with memory without the registry lock, and freed in turns") {
+TEST_CASE("a large queue is backed with memory without the registry lock, and given back so") {
   TestPlatform platform;
   const auto process = platform.join();
   Inspection inspection(platform);
   const uint64_t used = inspection.used_bytes();
+  const uint64_t resident = inspection.resident_bytes();
   {
     SteppedChild child("subscribes_deep", {platform.name(), "1"});
     const Backed backed = run_to_end(child, inspection, 1);
     CHECK(backed.without_lock >= deep_bytes);
     CHECK(backed.in_longest_hold == 0);
-    CHECK_FALSE(is_any_made(inspection.registry()));
+    CHECK_FALSE(is_any_in_hand(inspection.registry()));
     child.kill();
   }
   wait_until("it is reaped", [&] { return inspection.used_bytes() == used; });
-  const Standstill no_other_sweeper(platform, 1);
-  auto subscription = process->create_subscription(on_topic("/x", keep_last(deep)));
+  CHECK(inspection.resident_bytes() < resident + deep_bytes);
+}
+
+TEST_CASE("a hand that its process could not empty is emptied by its next use") {
+  const TestPlatform platform;
+  const auto process = platform.join();
+  Inspection inspection(platform);
   Registry & registry = inspection.registry();
-  const auto slot = static_cast<uint32_t>(endpoint_in(subscription->gid()));
+  const uint64_t used = inspection.used_bytes();
   {
+    BlockInHand hand(registry, Registry::Lock::no_wait_ns);
     const Registry::Lock lock(registry);
-    Turn turn;
-    REQUIRE(closing::close_some(registry, slot, false, turn));
+    Cluster & cluster = registry.clusters().at(1);
+    hand.take_up(SegmentRef::make(1, cluster.allocate(deep_bytes)), deep_bytes);
   }
-  uint32_t turns = 0;
-  for (bool is_freed = false; !is_freed; ++turns) {
-    const Registry::Lock lock(registry);
-    is_freed = sweeping::Round(registry).sweep_some_of(slot);
+  CHECK_FALSE(is_any_in_hand(registry));
+  CHECK(inspection.used_bytes() == used);
+  {
+    std::optional<Registry::Lock> lock;
+    BlockInHand hand(registry, Registry::Lock::no_wait_ns);
+    lock.emplace(registry);
+    hand.take_up(
+      SegmentRef::make(1, registry.clusters().at(1).allocate(deep_bytes)), deep_bytes);
+    std::async(std::launch::async, [gone = std::move(hand)] {}).get();  // while the lock is held
   }
-  CHECK(turns >= 4);
+  CHECK(is_any_in_hand(registry));
+  CHECK(inspection.used_bytes() == used + deep_bytes);
+  const BlockInHand next(registry);
   CHECK(inspection.used_bytes() == used);
 }
 
-TEST_CASE("a large block goes back to the system whole, wherever its pieces end") {
-  constexpr uint64_t page = 4096;
-  constexpr uint64_t bytes = freed_piece_bytes + 5 * page;
+TEST_CASE("a block that changes hands when its process dies has one owner after the repair") {
   const TestPlatform platform;
-  const auto process = platform.join(1);
+  const auto process = platform.join();
   Inspection inspection(platform);
-  const Registry::Lock lock(inspection.registry());
-  Cluster & cluster = inspection.registry().clusters().at(1);
-  for (uint64_t shift = 0; shift < freed_piece_bytes; shift += page) {
-    CAPTURE(shift);
-    cluster.allocate(page);
-    const uint64_t before = inspection.resident_bytes();
-    const uint64_t offset = cluster.allocate(bytes);
-    CHECK(inspection.resident_bytes() == before + bytes);
-    for (uint32_t kept = cluster.free_last_piece(offset, bytes, 0); kept != 0;) {
-      kept = cluster.free_last_piece(offset, bytes, kept);
+  Registry & registry = inspection.registry();
+  const auto publisher = process->create_publisher(on_topic("/x", keep_last(1)));
+  publish(*publisher, 1, 1 << 20);
+  const uint64_t used = inspection.used_bytes();
+  Hand & hand = *registry.own_hand();
+  for (const GenerationEntry & entry : inspection.header_of(*publisher).generations) {
+    if (entry.offset.load() != 0 && entry.extent_bytes() > 1 << 20) {
+      hand.bytes.store(entry.extent_bytes());
+      hand.block.store(SegmentRef::make(1, entry.offset.load()).word);
     }
-    CHECK(inspection.resident_bytes() == before);
   }
+  REQUIRE(is_any_in_hand(registry));
+  registry.header().needs_repair = 1;
+  process->add_node("node", "/", "/");
+  CHECK_FALSE(is_any_in_hand(registry));
+  CHECK(inspection.used_bytes() == used);
 }
 
 TEST_CASE("a process that dies with a queue in hand leaves none of it") {
@@ -205,7 +212,7 @@ TEST_CASE("a process that dies with a queue in hand leaves none of it") {
   Inspection inspection(platform);
   const uint64_t used = inspection.used_bytes();
   SteppedChild child("subscribes_deep", {platform.name(), "1"});
-  while (!is_any_made(inspection.registry())) {
+  while (!is_any_in_hand(inspection.registry())) {
     REQUIRE_FALSE(child.finished());
     child.run_to_system_call();
   }
@@ -220,7 +227,7 @@ TEST_CASE("a process that dies with a block of a table in hand leaves none of it
   Crowd f;
   const uint64_t used = f.inspection.used_bytes();
   SteppedChild child("subscribes", {f.platform.name(), "1"});
-  while (!is_any_made(f.inspection.registry())) {
+  while (!is_any_in_hand(f.inspection.registry())) {
     REQUIRE_FALSE(child.finished());
     child.run_to_system_call();
   }
@@ -251,44 +258,22 @@ TEST_CASE("a full file system: no block of a table is used that has no memory be
   };
   const Refusal refusal = refusal_of(subscribe);
   CHECK(refusal.code == ErrorCode::no_space);
-  CHECK_FALSE(is_any_made(f.inspection.registry()));
+  CHECK_FALSE(is_any_in_hand(f.inspection.registry()));
   REQUIRE(mount("tmpfs", "/dev/shm", "tmpfs", MS_REMOUNT, "size=50%") == 0);
   f.inspection.wait_until_swept();
   CHECK(f.inspection.used_bytes() == used);
   CHECK(subscribe()->matched().current == f.publishers.size());
 }
 
-TEST_CASE("a landing is freed in turns; a subscription that comes meanwhile gets another one") {
+TEST_CASE("a landing is freed with its last subscription; one that comes later gets another one") {
   FromAfar f;
-  auto no_other_sweeper = std::make_optional<Standstill>(f.platform, 2);
   const uint64_t used = f.inspection.used_bytes(2);
-  auto subscription = f.subscription();
-  Registry & registry = f.inspection.registry();
-  const auto slot = static_cast<uint32_t>(endpoint_in(subscription->gid()));
-  const auto sweep_once = [&] {
-    const Registry::Lock lock(registry);
-    return sweeping::Round(registry).sweep_some_of(slot);
-  };
-  for (bool closed = false; !closed;) {
-    const Registry::Lock lock(registry);
-    Turn turn;
-    closed = closing::close_some(registry, slot, false, turn);
+  for (int i = 1; i <= 3; ++i) {
+    const std::string number = std::to_string(i);
+    const auto subscription = f.subscription();
+    f.publisher.tell("publish " + number + " " + number + " 1000");
+    CHECK(take_next(*f.process, *subscription).number == static_cast<uint64_t>(i));
   }
-  for (int turns = 0; turns < 4; ++turns) {
-    const uint64_t left = f.inspection.used_bytes(2);
-    REQUIRE_FALSE(sweep_once());
-    CHECK(f.inspection.used_bytes(2) < left);
-  }
-  auto next = f.subscription();
-  no_other_sweeper.reset();
-  f.publisher.tell("publish 1 1 1000");
-  CHECK(take_next(*f.process, *next).number == 1);
-  while (!sweep_once()) {
-  }
-  f.publisher.tell("publish 2 2 1000");
-  CHECK(take_next(*f.process, *next).number == 2);
-  subscription.reset();
-  next.reset();
   f.inspection.wait_until_swept();  // by the reaper, where publisher or mover was in its phase
   CHECK(f.inspection.used_bytes(2) == used);
 }
@@ -297,7 +282,7 @@ TEST_CASE("room for one landing is enough for subscriptions that are created at 
   FromAfar f(profile_of(dsm_bytes + dsm_bytes / 2));
   Registry & registry = f.inspection.registry();
   SteppedChild child("subscribes", {f.platform.name(), "2"});
-  while (!is_any_made(registry)) {
+  while (!is_any_in_hand(registry)) {
     REQUIRE_FALSE(child.finished());
     child.run_to_system_call();
   }
