@@ -5,16 +5,17 @@ from __future__ import annotations
 
 import contextlib
 import io
-import keyword
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rosidl_adapter.msg import string_to_idl_string_literal
 from rosidl_adapter.parser import is_valid_message_name, parse_message_string
 
 from rmw_manycore_py.errors import DefinitionError, Problem
+from rmw_manycore_py.interfaces.field_names import check_field_name
 
 KINDS = ("msg", "srv", "action")
 SEPARATOR = "---"
@@ -34,20 +35,8 @@ _IMPLIED = {
         *("action_msgs/msg/GoalStatusArray", "action_msgs/srv/CancelGoal"),
     ),
 }
-# Keywords that cannot be field names in generated C and C++.
-_C_WORDS = frozenset(
-    {
-        *("alignas", "alignof", "asm", "auto", "bool", "break", "case", "catch", "char", "class"),
-        *("const", "constexpr", "const_cast", "continue", "decltype", "default", "delete", "do"),
-        *("double", "dynamic_cast", "else", "enum", "explicit", "export", "extern", "false"),
-        *("float", "for", "friend", "goto", "if", "inline", "int", "long", "mutable", "namespace"),
-        *("new", "noexcept", "nullptr", "operator", "private", "protected", "public", "register"),
-        *("reinterpret_cast", "restrict", "return", "short", "signed", "sizeof", "static"),
-        *("static_assert", "static_cast", "struct", "switch", "template", "this", "thread_local"),
-        *("throw", "true", "try", "typedef", "typeid", "typename", "union", "unsigned", "using"),
-        *("virtual", "void", "volatile", "wchar_t", "while"),
-    }
-)
+# A string that rosidl's grammar of IDL reads.
+_LITERAL = re.compile(r'"([^"\\\n]|\\.)*"')
 _REPLACED = {"time": "builtin_interfaces/Time", "duration": "builtin_interfaces/Duration"}
 
 
@@ -80,9 +69,13 @@ def read_definition(file: Path, package: str) -> Definition:
     except (OSError, UnicodeDecodeError) as error:
         raise _error(file, 0, name, "a text file in UTF-8", str(error)) from error
     full_name = f"{package}/{kind}/{name}"
-    read = _idl_references if file.suffix == ".idl" else _references
-    references = {**dict.fromkeys(_IMPLIED[kind], 0), **read(file, full_name, text)}
-    return Definition(full_name, file, references)
+    if file.suffix == ".idl":
+        from rmw_manycore_py.interfaces.idl import read_idl  # late: imports rosidl's parser of IDL
+
+        found = read_idl(file, [full_name + part for part in _PARTS[kind]], text)
+    else:
+        found = _references(file, full_name, text)
+    return Definition(full_name, file, {**dict.fromkeys(_IMPLIED[kind], 0), **found})
 
 
 def _references(file: Path, full_name: str, text: str) -> dict[str, int]:
@@ -112,13 +105,34 @@ def _fields(
 ) -> Iterator[tuple[Any, int]]:
     """Yield the fields of one part of a definition with their lines, counted from 1."""
     message = _parsed(file, package, name, lines, start)
+    second = [line.partition("#")[0].split()[1:2] for line in lines]
     for field in message.fields:
-        pattern = re.compile(rf"\s*\S+\s+{field.name}\b")
-        line = next(n for n, text in enumerate(lines, start + 1) if pattern.match(text))
-        if keyword.iskeyword(field.name) or field.name in _C_WORDS:
-            expected = "a name that is no keyword of Python, C or C++"
-            raise _error(file, line, field.name, expected, f"'{field.name}'")
+        line = start + 1 + second.index([field.name])
+        check_field_name(file, line, field.name)
         yield field, line
+    for element in (message, *message.fields, *message.constants):
+        for text in _texts(element):
+            if not _is_literal(text):
+                line = next((n for n, one in enumerate(lines, start + 1) if text in one), 0)
+                expected = "a text whose backslashes and quotes an IDL string can have"
+                raise _error(file, line, "", expected, f"'{text}'")
+
+
+def _texts(element: Any) -> Iterator[str]:
+    """Yield what rosidl writes as a string literal into the .idl file, as it is."""
+    yield from element.annotations.get("comment", ())
+    yield element.annotations.get("unit", "")
+    for name in ("value", "default_value"):
+        value = getattr(element, name, "")
+        if isinstance(value, str):
+            yield value
+
+
+def _is_literal(text: str) -> bool:
+    try:
+        return bool(_LITERAL.fullmatch(string_to_idl_string_literal(text)))
+    except UnicodeDecodeError:
+        return False
 
 
 def _parsed(file: Path, package: str, name: str, lines: list[str], start: int) -> Any:
@@ -138,40 +152,6 @@ def _parsed(file: Path, package: str, name: str, lines: list[str], start: int) -
             if error is None:
                 return message
     raise _error(file, start, "", "fields and constants", str(error)) from error
-
-
-def _idl_references(file: Path, full_name: str, text: str) -> dict[str, int]:
-    from rosidl_parser.definition import Action, Message, NamespacedType, Service
-    from rosidl_parser.parser import parse_idl_string
-
-    try:
-        content = parse_idl_string(text)
-    except Exception as error:  # lark errors have a line
-        line = max(getattr(error, "line", 0) or 0, 0)
-        raise _error(file, line, "", "IDL 4.2", str(error).splitlines()[0]) from error
-    messages = list(content.get_elements_of_type(Message))
-    names = [message.structure.namespaced_type for message in messages]
-    for service in content.get_elements_of_type(Service):
-        names.append(service.namespaced_type)
-        messages += [service.request_message, service.response_message]
-    for action in content.get_elements_of_type(Action):
-        names.append(action.namespaced_type)
-        messages += [action.goal, action.result, action.feedback]
-    defined = ["/".join(name.namespaced_name()) for name in names]
-    if full_name not in defined:
-        raise _error(file, 0, "", full_name, ", ".join(defined) or "no type")
-    members = [member.type for message in messages for member in message.structure.members]
-    types = [getattr(type_, "value_type", type_) for type_ in members]
-    return {
-        "/".join(type_.namespaced_name()): _line_of(text, "::".join(type_.namespaced_name()))
-        for type_ in types
-        if isinstance(type_, NamespacedType)
-    }
-
-
-def _line_of(text: str, name: str) -> int:
-    """Return the first line that names a type; 0 if there is none."""
-    return text[: text.find(name)].count("\n") + 1 if name in text else 0
 
 
 def _error(file: Path, line: int, key: str, expected: str, found: str) -> DefinitionError:

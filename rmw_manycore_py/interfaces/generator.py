@@ -23,6 +23,8 @@ from rosidl_adapter.msg import convert_msg_to_idl
 from rosidl_adapter.srv import convert_srv_to_idl
 from rosidl_parser.parser import parse_idl_file
 
+from rmw_manycore_py.errors import what_is_wrong
+
 # rmw_manycore and Fast DDS serialize with the first; Fast DDS builds its types from the second.
 TYPE_SUPPORTS = ("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c")
 DESCRIPTION = "rosidl_generator_type_description"
@@ -154,8 +156,11 @@ STEPS = {"describe": describe, "code": generate_code, "python": generate_python}
 
 
 def main(step: str, file: str) -> None:
-    """Run one step of the request in a file."""
-    STEPS[step](Request(**json.loads(Path(file).read_text())))
+    """Run one step of the request in a file; on failure, print one line that begins `error:`."""
+    try:
+        STEPS[step](Request(**json.loads(Path(file).read_text())))
+    except Exception as error:  # generators assert, or fail in their templates
+        sys.exit(f"error: {what_is_wrong(error)}")
 
 
 if __name__ == "__main__":

@@ -134,8 +134,8 @@ def _package_name(directory: Path) -> str:
     if file.is_file():
         try:
             name = (ET.parse(file).getroot().findtext("name") or "").strip()
-        except ET.ParseError as error:
-            line = error.position[0]
+        except (ET.ParseError, LookupError, ValueError) as error:  # the latter: of its encoding
+            line = error.position[0] if isinstance(error, ET.ParseError) else 1
             raise DefinitionError(Problem(file, line, "", "XML", str(error))) from error
     if not is_valid_package_name(name):
         expected = "a package name of lower-case letters, digits and single underscores"

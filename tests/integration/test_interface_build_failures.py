@@ -116,6 +116,15 @@ def test_a_package_that_does_not_compile_is_named_and_none_is_seen(env, sources)
     assert imported("user_msgs.msg", env).returncode == 0
 
 
+def test_a_generator_that_fails_is_one_line_with_its_reason(env, sources) -> None:
+    text = "module odd_msgs { module msg { struct Odd { @default(value=3) short a[3]; }; }; };\n"
+    write_definitions(sources, {"odd_msgs/msg/Odd.idl": text})
+    failed = interface("build", sources, env=env, status=2)
+    file = f"{sources}/odd_msgs/msg/Odd.idl"
+    assert f"{file}: expected a definition that can be built, found" in failed.stderr
+    assert failed.stderr.endswith("error: malformed node or string: 3\n")
+
+
 def test_definitions_that_are_wrong_are_named_before_anything_is_built(env, sources) -> None:
     write_definitions(sources, {**TINY, "bad_msgs/msg/Bad.msg": "int32 a\nint32 9\n"})
     failed = interface("build", sources, env=env, status=2)

@@ -23,6 +23,15 @@ module my_msgs {
   };
 };
 """
+ENUM = """\
+module my_msgs { module msg {
+  enum Color { RED, GREEN };
+  struct Thing {
+    long a;
+    Color b;
+  };
+}; };
+"""
 
 
 def read(directory: Path, name: str, text: str | bytes) -> Definition:
@@ -53,7 +62,18 @@ def read(directory: Path, name: str, text: str | bytes) -> Definition:
         ("action/A.action", "int32 a\n---\nint32 b\n", 3, "3 parts"),
         ("action/A.action", "int32 a\n---\nint32 b\n---\nint32 c\nint32 =\n", 6, "int32 ="),
         ("msg/Thing.idl", IDL.replace("number;", "number"), 7, "expected IDL 4.2"),
-        ("msg/Other.idl", IDL, 0, "expected my_msgs/msg/Other, found my_msgs/msg/Thing"),
+        ("msg/Other.idl", IDL, 3, "expected my_msgs/msg/Other, and no other struct, found my_msgs"),
+        ("msg/Thing.idl", IDL + "struct More { long a; };\n", 10, "found More, my_msgs/msg/Thing"),
+        ("srv/Thing.idl", IDL, 3, "my_msgs/srv/Thing_Request and my_msgs/srv/Thing_Response"),
+        ("msg/Thing.idl", ENUM, 5, "'Color b;': Unknown named type: Color"),
+        ("msg/Thing.idl", IDL.replace("geometry_msgs::msg", "geometry_msgs"), 4, "::msg::Pose"),
+        ("msg/Thing.idl", IDL.replace("number", "number[2][2]"), 6, "multidimensional array"),
+        ("msg/Thing.idl", IDL.replace("long number", "string<0> number"), 6, "'string<0> number;'"),
+        ("msg/Thing.idl", IDL.replace("number", "default"), 6, "no keyword of Python, C or C++"),
+        ("msg/Thing.idl", IDL.replace("number", "parts"), 6, "a name for each member"),
+        ("msg/Thing.idl", IDL[:-10], 7, "found Unexpected end-of-input."),
+        ("msg/A.msg", "int32 a\n\n# below C:\\new\nint32 b\n", 3, "an IDL string can have"),
+        ("msg/A.msg", 'int32 a\nstring B="\\u12"\n', 2, "an IDL string can have"),
     ],
 )
 def test_what_is_wrong_is_named_with_its_line(

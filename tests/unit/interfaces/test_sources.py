@@ -78,6 +78,8 @@ def test_two_packages_of_one_name_must_be_the_same(tmp_path: Path) -> None:
         ("<package>\n<name>a</package>", 2, "expected XML"),
         ("<package><name>Bad-Name</name></package>", 0, "found 'Bad-Name'"),
         ("<package/>", 0, "found ''"),
+        ('<?xml version="1.0" encoding="x"?><package/>', 1, "XML, found unknown encoding: x"),
+        ('<?xml version="1.0" encoding="utf-7"?><package/>', 1, "multi-byte encodings"),
     ],
 )
 def test_a_package_without_a_good_name_is_refused(

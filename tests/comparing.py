@@ -1,0 +1,55 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Generated inputs, each read by us and by the real reader of its format.
+
+A comparison is a program, as readers keep state and print: python PROGRAM DIRECTORY FIRST LAST. It
+makes each input from its number alone, and prints a line for each on which the two disagree, or
+which ends in an error that users are not to see.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import os
+import re
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+
+FEW = 500
+MANY = int(os.environ.get("MANYCORE_TEST_COMPARED_FILES", "10000"))
+# Far above what any input takes on a busy machine: only an endless loop takes longer.
+HANG_S = 120
+
+Compare = Callable[[Path, int], str]
+
+
+class DisagreementError(Exception):
+    """We and the real reader have read an input differently."""
+
+
+def run(compare: Compare) -> None:
+    """Compare as the command line says, where `compare` returns the name of the outcome."""
+    directory, first, last = sys.argv[1:]
+    ends: Counter[str] = Counter()
+    for number in range(int(first), int(last)):
+        faulthandler.dump_traceback_later(HANG_S, exit=True)
+        try:
+            ends[compare(Path(directory), number)] += 1
+        except BaseException as error:
+            ends["wrong"] += 1
+            print(f"input {number}: {type(error).__name__}: {error}", file=sys.__stderr__)
+        faulthandler.cancel_dump_traceback_later()
+    counted = ", ".join(f"{number} {end}" for end, number in sorted(ends.items()))
+    print(counted, file=sys.__stderr__)
+    sys.exit(1 if ends["wrong"] else 0)
+
+
+def compared(program: Path, directory: Path, count: int) -> dict[str, int]:
+    """Run a comparison of `count` inputs; return how often each outcome occurred."""
+    words = [sys.executable, str(program), str(directory), "0", str(count)]
+    done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
+    assert done.returncode == 0, done.stderr[-10_000:]
+    last = done.stderr.splitlines()[-1]
+    return {end: int(number) for number, end in re.findall(r"(\d+) ([a-z ]+)", last)}
