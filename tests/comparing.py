@@ -9,8 +9,8 @@ which ends in an error that users are not to see.
 from __future__ import annotations
 
 import faulthandler
+import json
 import os
-import re
 import subprocess
 import sys
 from collections import Counter
@@ -41,8 +41,7 @@ def run(compare: Compare) -> None:
             ends["wrong"] += 1
             print(f"input {number}: {type(error).__name__}: {error}", file=sys.__stderr__)
         faulthandler.cancel_dump_traceback_later()
-    counted = ", ".join(f"{number} {end}" for end, number in sorted(ends.items()))
-    print(counted, file=sys.__stderr__)
+    print(json.dumps(ends), file=sys.__stderr__)
     sys.exit(1 if ends["wrong"] else 0)
 
 
@@ -51,5 +50,5 @@ def compared(program: Path, directory: Path, count: int) -> dict[str, int]:
     words = [sys.executable, str(program), str(directory), "0", str(count)]
     done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
     assert done.returncode == 0, done.stderr[-10_000:]
-    last = done.stderr.splitlines()[-1]
-    return {end: int(number) for number, end in re.findall(r"(\d+) ([a-z ]+)", last)}
+    counted: dict[str, int] = json.loads(done.stderr.splitlines()[-1])
+    return counted

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,7 @@ FILE_NAME = "metadata.yaml"
 _ROOT = "rosbag2_bagfile_information"
 _VERSION = 9
 _DISTRO = "jazzy"  # of the wheels
+_RECORD = "rosbag2"  # name of the metadata record in an MCAP file
 
 
 @dataclass
@@ -107,14 +108,14 @@ def read_metadata(folder: Path) -> dict[str, Any] | None:
     """
     path = folder / FILE_NAME
     try:
-        found = yaml.safe_load(path.read_text())[_ROOT]
+        found = yaml.safe_load(path.read_text(encoding="utf-8"))[_ROOT]
         if not isinstance(found["relative_file_paths"], list):
             raise TypeError("relative_file_paths")
     except FileNotFoundError:
         return None
     except OSError as error:
         raise ManycoreError(f"{path}: cannot be read: {error.strerror}", EXIT_BAD_INPUT) from error
-    except (yaml.YAMLError, UnicodeDecodeError, KeyError, TypeError) as error:
+    except Exception as error:  # numbers and dates of YAML raise errors of their own
         raise ManycoreError(
             f"{path}: expected '{_ROOT}' with 'relative_file_paths', as rosbag2 writes it, found "
             f"something else ({error!r}); without this file the recording is read by itself",
@@ -122,6 +123,18 @@ def read_metadata(folder: Path) -> dict[str, Any] | None:
         ) from error
     assert isinstance(found, dict)
     return found
+
+
+def own_metadata(records: Mapping[str, Mapping[str, str]]) -> dict[str, Any]:
+    """Return rosbag2's metadata from the records of an MCAP file; empty if there is none."""
+    record = records.get(_RECORD, {})
+    try:
+        found = yaml.safe_load(record.get("serialized_metadata", ""))
+    except Exception:  # informational only
+        found = None
+    # A file that rosbag2 has not finished has only the distribution.
+    distro = {"ros_distro": record["ROS_DISTRO"]} if "ROS_DISTRO" in record else {}
+    return {**distro, **(found if isinstance(found, dict) else {})}
 
 
 def _distinct(offers: Iterable[Qos]) -> list[Qos]:

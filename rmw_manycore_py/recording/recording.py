@@ -10,6 +10,7 @@ from typing import Any
 from typing_extensions import Self
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.recording.gaps import Gap, gaps_between
 from rmw_manycore_py.recording.input import Input, Recorded
 from rmw_manycore_py.recording.metadata import FILE_NAME, Span, TopicRow, read_metadata
 from rmw_manycore_py.recording.target import SUFFIX
@@ -28,12 +29,12 @@ class Recording:
         self._inputs: list[Input] = []
         try:
             for file in _files(path, metadata):
-                self._inputs.append(Input(file))
+                self._inputs.append(Input(file, metadata))
             self.topics = _merged(row for one in self._inputs for row in one.rows())
         except BaseException:
             self.close()
             raise
-        self.distro = str((metadata or {}).get("ros_distro") or self._inputs[0].distro())
+        self.distro = str(self._inputs[0].described.get("ros_distro", ""))
 
     def __enter__(self) -> Self:
         return self
@@ -57,6 +58,15 @@ class Recording:
         return [
             f"{one.path}: {one.fault}; reading the intact part" for one in self._inputs if one.fault
         ]
+
+    @property
+    def remarks(self) -> list[str]:
+        """Return what was left out of its topics."""
+        return [remark for one in self._inputs for remark in one.remarks]
+
+    def gaps(self, min_gap_ns: int) -> list[Gap]:
+        """Return the times without messages of at least this length."""
+        return gaps_between([one.busy_times(min_gap_ns) for one in self._inputs], min_gap_ns)
 
     @property
     def span(self) -> Span:

@@ -7,8 +7,9 @@ import os
 import subprocess
 
 import pytest
-from recordings import string_row, text_message, write_texts
+from recordings import NS_PER_S, START_NS, string_row, text_message, write_texts
 from ros_support import peer_node, spin_until, type_of
+from speakers import hear
 from support import IS_MANYCORE, manycore_command, peer_command, wait_until
 
 from rmw_manycore_py._transport import Process, Qos
@@ -130,6 +131,18 @@ def test_a_player_does_not_play_to_another_type(start, platform, tmp_path, kind)
         assert "another definition" in player.output or "std_msgs/msg/Int8 here" in player.output
         assert "--exclude-topics /a" in player.output
         del subscription
+
+
+def test_a_time_that_rolled_over_is_told_and_ends_nothing(start, tmp_path) -> None:
+    end_s = (2**64 - 1 - START_NS) // NS_PER_S - 1
+    bag = write_texts(tmp_path / "a.mcap", [("/a", 0, "x"), ("/a", end_s, "y")])
+    hearer = start(peer_command(hear, "/a", {}))
+    hearer.wait_for("listening")
+    player = start(manycore_command("topic", "play", bag))
+    player.wait_for("no message for 530.7 years after 0.000 s: playing waits as long; --duration 0")
+    hearer.wait_for("^heard x ")
+    assert player.stop() == 0, player
+    assert player.lines[-1].startswith("played 1 message; late by")
 
 
 def test_a_wrong_wish_of_a_player_is_said(start, tmp_path) -> None:

@@ -44,7 +44,7 @@ def command(path: Path, names_only: bool, as_json: bool) -> None:
                 echo(escaped(name))
         else:
             echo("\n".join(map(escaped, _lines(recording))))
-        print_notices(recording.faults)
+        print_notices([*recording.faults, *recording.remarks])
 
 
 def _row(recording: Recording) -> dict[str, Any]:

@@ -16,6 +16,7 @@ import numpy as np
 from rmw_manycore_py.cli.common.keyboard import single_keys
 from rmw_manycore_py.cli.common.printing import counted, echo, print_notices
 from rmw_manycore_py.cli.topic.alarm import Alarm
+from rmw_manycore_py.cli.topic.gap_notices import gap_notices
 from rmw_manycore_py.cli.topic.play_keys import HELP, press
 from rmw_manycore_py.cli.topic.status_line import StatusLine
 from rmw_manycore_py.recording.play.player import Player, Tally
@@ -46,7 +47,7 @@ class Settings:
 def play(platform: str | None, settings: Settings, *, as_json: bool) -> None:
     """Play to a platform, or to DDS if it is None, until the end or a signal."""
     with Recording(settings.path) as recording, closing(_stage(platform)) as stage:
-        print_notices(recording.faults)
+        print_notices([*recording.faults, *recording.remarks])
         position = Position(settings.rate, paused=settings.paused)
         player = Player(
             recording,
@@ -57,6 +58,7 @@ def play(platform: str | None, settings: Settings, *, as_json: bool) -> None:
             delay_s=settings.delay_s,
             clock_hz=settings.clock_hz,
         )
+        print_notices(gap_notices(recording, player.start_ns, player.end_ns))
         _run(player, position, settings, StatusLine(quiet=as_json))
     _report(player.tally, as_json)
 

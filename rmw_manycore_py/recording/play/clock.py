@@ -14,6 +14,7 @@ from rmw_manycore_py.recording.play.stage import RawPublisher, Stage
 
 _TYPE = "rosgraph_msgs/msg/Clock"
 _NS_PER_S = 1_000_000_000
+_MAX_SECONDS = 2**31 - 1  # of builtin_interfaces/msg/Time: in 2038
 
 
 class Clock:
@@ -47,6 +48,8 @@ class Clock:
 
 
 def clock_message(time_ns: int) -> bytes:
-    """Return a serialized rosgraph_msgs/msg/Clock."""
+    """Return a serialized rosgraph_msgs/msg/Clock; times after its last one are that one."""
     seconds, rest = divmod(time_ns, _NS_PER_S)
+    if seconds > _MAX_SECONDS:
+        seconds, rest = _MAX_SECONDS, _NS_PER_S - 1
     return struct.pack("<BBHiI", 0, 1, 0, seconds, rest)

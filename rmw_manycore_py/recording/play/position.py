@@ -104,5 +104,6 @@ class Position:
                 left_ns = (at_ns - self._at(now_ns)) / self._rate
                 if not self._is_paused and left_ns <= 0:
                     return int(-left_ns)
-                self._changed.wait(None if self._is_paused else left_ns / _NS_PER_S)
+                left_s = min(left_ns / _NS_PER_S, threading.TIMEOUT_MAX)
+                self._changed.wait(None if self._is_paused else left_s)
             return None

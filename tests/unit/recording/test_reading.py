@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
+import yaml
 from bag_support import Bag
 from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.writer import CompressionType, IndexType, Writer
@@ -101,6 +103,7 @@ def test_a_file_without_chunks_may_be_cut_off(tmp_path: Path) -> None:
         {"index_types": IndexType.NONE},
         {"use_statistics": False},
         {"repeat_channels": False, "repeat_schemas": False},
+        {"repeat_schemas": False},
     ],
 )
 def test_files_of_other_writers_are_read(tmp_path: Path, options: dict[str, object]) -> None:
@@ -132,6 +135,68 @@ def test_a_folder_of_another_rosbag2_writer_is_read(tmp_path: Path) -> None:
         assert texts_of(recording) == ["text 0", "text 1", "text 2"]
 
 
+# Key of metadata.yaml, and the version of the format that brought it.
+KEYS = {
+    "compression_format": 3, "compression_mode": 3, "files": 5, "custom_data": 6, "ros_distro": 8,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("version", range(1, 10))
+def test_a_folder_of_any_version_of_rosbag2_is_read(tmp_path: Path, version: int) -> None:
+    with Bag(
+        tmp_path / "bag", "mcap", "message" if version >= KEYS["compression_mode"] else ""
+    ) as bag:
+        for number in range(3):
+            bag.write("/a", bag.make("std_msgs/String", f"text {number}"), number)
+    file = tmp_path / "bag/metadata.yaml"
+    metadata = yaml.safe_load(file.read_text())
+    found = metadata["rosbag2_bagfile_information"]
+    found["version"] = version
+    for key in (key for key, since in KEYS.items() if since > version):
+        del found[key]
+    for topic in found["topics_with_message_count"] if version < 9 else ():
+        topic["topic_metadata"]["offered_qos_profiles"] = ""
+    if version <= 3:  # relative to the parent directory
+        found["relative_file_paths"] = [f"bag/{name}" for name in found["relative_file_paths"]]
+    file.write_text(yaml.safe_dump(metadata))
+    with Recording(tmp_path / "bag") as recording:
+        assert texts_of(recording) == ["text 0", "text 1", "text 2"]
+        assert recording.distro == "rosbags"  # the file has it, too
+    assert refusal_with(file, metadata, compression_mode="MESSAGE", compression_format="lz4")
+
+
+def refusal_with(file: Path, metadata: dict[str, Any], **changes: str) -> bool:
+    metadata["rosbag2_bagfile_information"].update(changes)
+    file.write_text(yaml.safe_dump(metadata))
+    return "expected messages compressed with zstd, found 'lz4'" in refusal(file.parent)
+
+
+def test_profiles_of_qos_that_cannot_be_read_are_left_out(tmp_path: Path) -> None:
+    with (tmp_path / "a.mcap").open("wb") as file:
+        writer = Writer(file)
+        writer.start("ros2")
+        metadata = {"offered_qos_profiles": "- history: x"}
+        channel = writer.register_channel("/a", "cdr", 0, metadata)
+        writer.add_message(channel, 1, text_message("text"), 1)
+        writer.finish()
+    with Recording(tmp_path / "a.mcap") as recording:
+        assert texts_of(recording) == ["text"]
+        (remark,) = recording.remarks
+        assert "/a has no QoS profiles: KeyError('reliability'): they are left out" in remark
+
+
+def test_messages_of_a_file_without_chunks_come_in_the_order_of_their_times(tmp_path: Path) -> None:
+    with (tmp_path / "a.mcap").open("wb") as file:
+        writer = Writer(file, use_chunking=False)
+        writer.start("ros2")
+        channel = writer.register_channel("/a", "cdr", 0)
+        for at_ns in (3, 1, 2):
+            writer.add_message(channel, at_ns, text_message(f"text {at_ns}"), at_ns)
+        writer.finish()
+    with Recording(tmp_path / "a.mcap") as recording:
+        assert texts_of(recording) == ["text 1", "text 2", "text 3"]
+
+
 def test_a_folder_with_several_files_is_one_recording(tmp_path: Path) -> None:
     write_texts(tmp_path / "x_0.mcap", TEXTS[:5])
     write_texts(tmp_path / "x_1.mcap", TEXTS[5:])
@@ -156,8 +221,9 @@ def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
         assert found in refusal(file)
     assert "neither" in refusal(tmp_path.parent / tmp_path.name / ".." / "..")
     (tmp_path / "b").mkdir()
-    (tmp_path / "b" / "metadata.yaml").write_text("a: 1")
-    assert "rosbag2_bagfile_information" in refusal(tmp_path / "b")
+    for text in ("a: 1", "a: 2024-13-01", "[" * 3000, "\0"):
+        (tmp_path / "b" / "metadata.yaml").write_text(text)
+        assert "rosbag2_bagfile_information" in refusal(tmp_path / "b")
     assert "rosbags-convert" in refusal(tmp_path / "old.db3")
     assert "zstd -d" in refusal(tmp_path / "a.mcap.zstd")
 
@@ -167,6 +233,8 @@ def test_a_missing_file_of_a_folder_is_named(tmp_path: Path) -> None:
     folder.mkdir()
     write_metadata(folder, {"relative_file_paths": ["bag_0.mcap"]})
     assert "bag_0.mcap: cannot be read: No such file" in refusal(folder)
+    write_metadata(folder, {"relative_file_paths": ["bag_0.mcap\0"]})
+    assert "cannot be read: embedded null byte" in refusal(folder)
 
 
 def test_a_damaged_chunk_is_said(tmp_path: Path) -> None:

@@ -112,3 +112,10 @@ def test_stopping_ends_the_wait(watch: Watch) -> None:
     position.stop()
     assert waiting.ended() is None
     assert position.wait_until(S) is None
+
+
+def test_a_time_that_rolled_over_is_waited_for(watch: Watch) -> None:
+    position = Position(0.01, paused=False, now_ns=watch)
+    waiting = Waiting(position, watch, 2**64 - 1)
+    position.stop()
+    assert waiting.ended() is None
