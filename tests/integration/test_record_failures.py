@@ -154,6 +154,9 @@ def test_a_wrong_wish_of_a_player_is_said(start, tmp_path) -> None:
         (["--remap", "/a"], "expected OLD:=NEW, found '/a'"),
         (["--regex", "("], "is not a regular expression"),
         (["--rate", "0"], "--rate"),
+        (["--rate", "nan"], "expected a number up to 1e+12, found nan"),
+        (["--start-offset", "1e300"], "found 1e300"),
+        (["--duration", "inf"], "found inf"),
     ):
         player = start(manycore_command("topic", "play", bag, *words))
         assert player.wait() == EXIT_BAD_INPUT, player

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -20,7 +21,20 @@ from rmw_manycore_py.recording.mcap_support import require_library
 from rmw_manycore_py.recording.selection import Selection
 from rmw_manycore_py.ros.names import expand
 
+_MAX = 1e12
 _CLOCK_HZ = 40.0  # as `ros2 bag play --clock`
+
+
+class _Number(click.FloatRange):
+    """A range of numbers that can be counted in nanoseconds: neither nan nor infinite."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, context: click.Context | None
+    ) -> float:
+        number = float(super().convert(value, param, context))
+        if not abs(number) <= _MAX:
+            self.fail(f"expected a number up to {_MAX:g}, found {value}.", param, context)
+        return number
 
 
 def _remappings(
@@ -48,7 +62,7 @@ def _remappings(
 @click.option(
     "-r",
     "--rate",
-    type=click.FloatRange(0.01, 1000),
+    type=_Number(0.01, 1000),
     default=1.0,
     show_default=True,
     help="Playback speed relative to the recording.",
@@ -77,7 +91,7 @@ def _remappings(
     "--clock",
     "clock_hz",
     metavar="[HZ]",
-    type=click.FloatRange(min=0, min_open=True),
+    type=_Number(min=0, min_open=True),
     is_flag=False,
     flag_value=_CLOCK_HZ,
     help=f"Publish /clock, {_CLOCK_HZ:g} times per second by default.",
@@ -87,7 +101,7 @@ def _remappings(
     "--delay",
     "delay_s",
     metavar="S",
-    type=click.FloatRange(min=0),
+    type=_Number(min=0),
     default=0.0,
     help="Wait S seconds before the first message.",
 )
@@ -95,7 +109,7 @@ def _remappings(
     "--start-offset",
     "offset_s",
     metavar="S",
-    type=click.FloatRange(min=0),
+    type=_Number(min=0),
     default=0.0,
     help="Skip the first S seconds of the recording.",
 )
@@ -104,7 +118,7 @@ def _remappings(
     "--playback-duration",
     "duration_s",
     metavar="S",
-    type=click.FloatRange(min=0),
+    type=_Number(min=0),
     help="Play only S seconds of the recording.",
 )
 @click.option("-p", "--start-paused", "paused", is_flag=True, help="Start paused.")
