@@ -9,6 +9,6 @@ import pytest
 from comparing import MANY, compared
 
 
-@pytest.mark.parametrize("kind", ["definitions", "recordings"])
+@pytest.mark.parametrize("kind", ["clouds", "definitions", "recordings"])
 def test_made_files_are_read_as_by_their_real_reader(kind: str, tmp_path: Path) -> None:
     print(compared(Path(__file__).parents[1] / f"{kind}_compared.py", tmp_path, MANY))

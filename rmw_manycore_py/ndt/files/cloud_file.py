@@ -1,16 +1,14 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Reads point cloud files: PCD, and PLY with Open3D."""
+"""Reads and writes point cloud files: PCD and PLY, by the suffix of their names."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from types import ModuleType
 
-import numpy as np
-
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, what_is_wrong
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, shorten, what_is_wrong
 from rmw_manycore_py.ndt.files.pcd_file import read_pcd
-from rmw_manycore_py.ndt.files.ply_file import check_ply
+from rmw_manycore_py.ndt.files.ply_file import read_ply
 from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.precision import as_they_were
@@ -18,20 +16,16 @@ from rmw_manycore_py.ndt.geometry.precision import as_they_were
 
 def read_cloud(path: Path) -> Points:
     """Return the points (N, 3) of a PCD or PLY file, including non-finite ones."""
-    read = read_pcd if path.suffix == ".pcd" else _read_ply
+    read = read_pcd if suffix_of(path) == ".pcd" else read_ply
     try:
         return as_they_were(read(path))
     except UNREADABLE as error:
         raise map_error(path, what_is_wrong(error)) from error
 
 
-def _read_ply(path: Path) -> Points:
-    o3d = load_open3d()
-    check_ply(path)
-    try:
-        return np.asarray(o3d.io.read_point_cloud(str(path)).points)
-    except RuntimeError as error:
-        raise ValueError(f"Open3D cannot read it: {error}") from error
+def suffix_of(path: Path) -> str:
+    """Return the suffix of a name in lower case: other systems write `MAP.PCD`."""
+    return path.suffix.lower()
 
 
 def load_open3d() -> ModuleType:
@@ -40,7 +34,7 @@ def load_open3d() -> ModuleType:
         import open3d
     except ImportError as error:
         raise ManycoreError(
-            f"Open3D cannot be loaded ({error}). PLY maps and downsampling need it: "
+            f"Open3D cannot be loaded ({error}). Downsampling needs it: "
             "pip install 'rmw-manycore[ndt]'; its system libraries: "
             "apt install libusb-1.0-0 libgl1 libegl1 libgomp1 libx11-6"
         ) from error
@@ -51,4 +45,4 @@ def load_open3d() -> ModuleType:
 
 def map_error(path: Path, problem: str) -> ManycoreError:
     """Return the error for a map that cannot be read or written."""
-    return ManycoreError(f"map {path}: {problem}", EXIT_BAD_INPUT)
+    return ManycoreError(f"map {path}: {shorten(problem)}", EXIT_BAD_INPUT)

@@ -1,72 +1,131 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Reads and writes positions in PCD files (PCL's format, version 0.7), in the file's precision.
+"""Reads and writes positions in PCD files, in the file's precision.
 
-Uses pypcd4 instead of Open3D (0.20): of Open3D's readers of binary files, one reads doubles as
-singles, the other fails on the padding fields that PCL writes.
+The reader is our own: of Open3D's (0.20) readers of binary files, one reads doubles as singles, the
+other fails on the padding fields that PCL writes; pypcd4 (1.5) takes only files as PCL writes them
+today, and believes their headers.
 """
 
 from __future__ import annotations
 
-import re
+import os
+import struct
+import warnings
 from pathlib import Path
 from types import ModuleType
+from typing import IO, Any, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
+from rmw_manycore_py.ndt.files.pcd_header import PADDING, PcdHeader, read_header
 from rmw_manycore_py.ndt.geometry.arrays import Points
 
 AXES = ("x", "y", "z")
-MOST_NUMBERS = 10_000  # per point: pypcd4 generates a name for each
+Column: TypeAlias = npt.NDArray[Any]  # (N,)
+HEADER = """VERSION 0.7
+FIELDS x y z
+SIZE {size} {size} {size}
+TYPE F F F
+COUNT 1 1 1
+WIDTH {points}
+HEIGHT 1
+VIEWPOINT 0 0 0 1 0 0 0
+POINTS {points}
+DATA binary
+"""
+_NO_COLUMNS = [np.zeros(0)] * len(AXES)
+# LZF replaces at most 264 bytes by 3.
+LARGEST_RATIO = 88
 
 
 def read_pcd(path: Path) -> Points:
     """Return the positions (N, 3), including non-finite ones; raises OSError and ValueError."""
-    _check_counts(path)
-    from pydantic import ValidationError  # a dependency of pypcd4, not of other maps
-
-    try:
-        cloud = _load_pypcd4().PointCloud.from_path(path)
-    except ValidationError as error:
-        wrong = ", ".join(f"{entry['loc'][0]}: {entry['msg']}" for entry in error.errors())
-        raise ValueError(f"its header is broken: {wrong}") from error
-    except (OSError, ValueError):
-        raise
-    except UNREADABLE as error:
-        raise ValueError(f"it is broken: {error!r}") from error  # pypcd4 does not validate
-    missing = [axis for axis in AXES if axis not in cloud.fields]
-    if missing:
-        raise ValueError(f"it has no field {', '.join(missing)}")
-    points: Points = np.stack([cloud.pc_data[axis] for axis in AXES], axis=1)
-    return points if points.dtype == np.float32 else points.astype(np.float64)
-
-
-def _check_counts(path: Path) -> None:
-    """Raise ValueError for a header whose fields alone would exhaust memory."""
     with path.open("rb") as file:
-        for line in file:
-            if line.startswith(b"DATA"):
-                return
-            numbers = sum(map(int, re.findall(rb"\d+", line))) if line.startswith(b"COUNT") else 0
-            if numbers > MOST_NUMBERS:
-                raise ValueError(
-                    f"each of its points has {numbers} numbers, expected at most {MOST_NUMBERS}"
-                )
+        header = read_header(file)
+        names = [field.name for field in header.fields]
+        missing = [axis for axis in AXES if axis not in names]
+        if missing:
+            raise ValueError(f"it has no field {', '.join(missing)}")
+        axes = [names.index(axis) for axis in AXES]
+        numbers = {header.fields[axis].number for axis in axes}
+        has_points = header.points > 0
+        columns = _READERS[header.encoding](file, header, axes) if has_points else _NO_COLUMNS
+    number = np.float32 if numbers == {np.dtype(np.float32)} else np.float64
+    points: Points = np.stack(columns, axis=1).astype(number)
+    return points
+
+
+def _ascii(file: IO[bytes], header: PcdHeader, axes: list[int]) -> list[Column]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of no data at all
+        table = np.loadtxt(file, comments=None, max_rows=header.points, ndmin=2)
+    if table.shape[0] < header.points:
+        raise ValueError(f"its {header.points} points need as many lines, found {table.shape[0]}")
+    if table.shape[1] != header.point_numbers:
+        raise ValueError(f"its points need {header.point_numbers} numbers, found {table.shape[1]}")
+    firsts = np.cumsum([0, *(field.count for field in header.fields)])
+    return [table[:, firsts[axis]] for axis in axes]
+
+
+def _binary(file: IO[bytes], header: PcdHeader, axes: list[int]) -> list[Column]:
+    data = _read(file, header, header.points * header.point_bytes)
+    firsts = np.cumsum([0, *(field.bytes for field in header.fields)])
+    shape, strides = (header.points,), (header.point_bytes,)
+    return [
+        np.ndarray(shape, header.fields[axis].number, data, int(firsts[axis]), strides)
+        for axis in axes
+    ]
+
+
+def _compressed(file: IO[bytes], header: PcdHeader, axes: list[int]) -> list[Column]:
+    """Return columns of a file that has one field of all points after the other."""
+    packed_bytes, unpacked_bytes = struct.unpack("<II", _read(file, header, 8))
+    packed = _read(file, header, packed_bytes)
+    # PCL leaves padding out, others do not.
+    sizes = [field.bytes * header.points for field in header.fields]
+    bare = [0 if f.name == PADDING else s for f, s in zip(header.fields, sizes, strict=True)]
+    sizes = bare if unpacked_bytes == sum(bare) else sizes
+    if unpacked_bytes < sum(sizes) or unpacked_bytes > LARGEST_RATIO * packed_bytes:
+        raise ValueError(
+            f"its {header.points} points need {sum(sizes)} bytes, found {unpacked_bytes} in "
+            f"{packed_bytes} compressed ones"
+        )
+    data = _load_lzf().decompress(packed, unpacked_bytes) if unpacked_bytes else b""
+    if data is None or len(data) != unpacked_bytes:
+        raise ValueError("it is broken: its data cannot be decompressed")
+    firsts = np.cumsum([0, *sizes])
+    return [
+        np.frombuffer(data, header.fields[axis].number, header.points, int(firsts[axis]))
+        for axis in axes
+    ]
+
+
+def _read(file: IO[bytes], header: PcdHeader, size_bytes: int) -> bytes:
+    # Before anything is allocated: the size may be an invention of a damaged header.
+    left_bytes = os.fstat(file.fileno()).st_size - file.tell()
+    if left_bytes < size_bytes:
+        raise ValueError(f"its {header.points} points need {size_bytes} bytes, found {left_bytes}")
+    return file.read(size_bytes)
+
+
+_READERS = {"ascii": _ascii, "binary": _binary, "binary_compressed": _compressed}
 
 
 def write_pcd(path: Path, points: Points) -> None:
     """Write positions (N, 3) in their own precision, as a binary file."""
-    _load_pypcd4().PointCloud.from_points(points, AXES, (points.dtype.type,) * 3).save(path)
+    header = HEADER.format(size=points.dtype.itemsize, points=len(points))
+    path.write_bytes(header.encode() + points.astype(points.dtype.newbyteorder("<")).tobytes())
 
 
-def _load_pypcd4() -> ModuleType:
+def _load_lzf() -> ModuleType:
     try:
-        import pypcd4
+        import lzf
     except ImportError as error:
         raise ManycoreError(
-            f"pypcd4 cannot be loaded ({error}). Maps as PCD need it: "
+            f"python-neo-lzf cannot be loaded ({error}). Compressed PCD files need it: "
             "pip install 'rmw-manycore[ndt]'"
         ) from error
-    assert isinstance(pypcd4, ModuleType)
-    return pypcd4
+    assert isinstance(lzf, ModuleType)
+    return lzf

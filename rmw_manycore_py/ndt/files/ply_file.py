@@ -1,52 +1,215 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Checks that a PLY file is complete: Open3D invents missing points."""
+"""Reads and writes positions in PLY files, in the file's precision.
+
+The reader is our own: Open3D's (0.20) invents the points that are missing in a cut file, and mixes
+up axes that do not stand in the order x, y, z.
+"""
 
 from __future__ import annotations
 
+import os
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import IO, Any
 
-SIZES = {
-    **dict.fromkeys(("char", "uchar", "int8", "uint8"), 1),
-    **dict.fromkeys(("short", "ushort", "int16", "uint16"), 2),
-    **dict.fromkeys(("int", "uint", "int32", "uint32", "float", "float32"), 4),
-    **dict.fromkeys(("double", "float64"), 8),
+import numpy as np
+import numpy.typing as npt
+
+from rmw_manycore_py.ndt.geometry.arrays import Points
+
+AXES = ("x", "y", "z")
+NUMBERS = {
+    **dict.fromkeys(("char", "int8"), "i1"),
+    **dict.fromkeys(("uchar", "uint8"), "u1"),
+    **dict.fromkeys(("short", "int16"), "i2"),
+    **dict.fromkeys(("ushort", "uint16"), "u2"),
+    **dict.fromkeys(("int", "int32"), "i4"),
+    **dict.fromkeys(("uint", "uint32"), "u4"),
+    **dict.fromkeys(("float", "float32"), "f4"),
+    **dict.fromkeys(("double", "float64"), "f8"),
 }
+ORDERS = {"ascii": "=", "binary_little_endian": "<", "binary_big_endian": ">"}
 LONGEST_HEADER = 100_000  # bytes
-END = b"end_header"
+HEADER = """ply
+format binary_little_endian 1.0
+element vertex {points}
+property {kind} x
+property {kind} y
+property {kind} z
+end_header
+"""
 
 
-def check_ply(path: Path) -> None:
-    """Raise ValueError for a truncated file.
+@dataclass
+class _Element:
+    """An element of the header; a list has the type of its length before that of its items."""
 
-    Files whose points are not the first element, or contain lists, are not checked.
-    """
-    raw = path.read_bytes()
-    header, end, _ = raw[:LONGEST_HEADER].partition(END)
-    if not end:
-        raise ValueError(f"it has no points: its header has no {END.decode()}")
-    lines = [line.split() for line in header.decode("ascii", "replace").splitlines()]
-    encoding = next((line[1] for line in lines if line[:1] == ["format"] and line[1:]), "")
-    points, kinds = _first_element(lines)
-    data = raw[len(header) :].partition(b"\n")[2]
-    if not all(kind in SIZES for kind in kinds):
+    name: str
+    count: int
+    properties: list[tuple[str, tuple[str, ...]]] = field(default_factory=list)
+
+    @property
+    def has_lists(self) -> bool:
+        return any(len(kinds) > 1 for _, kinds in self.properties)
+
+
+@dataclass
+class _Header:
+    encoding: str
+    elements: list[_Element]  # up to the points
+
+    @property
+    def points(self) -> _Element:
+        return self.elements[-1]
+
+
+def read_ply(path: Path) -> Points:
+    """Return the positions (N, 3), including non-finite ones; raises OSError and ValueError."""
+    with path.open("rb") as file:
+        header = _read_header(file)
+        names = [name for name, _ in header.points.properties]
+        missing = [axis for axis in AXES if axis not in names]
+        if missing:
+            raise ValueError(f"it has no field {', '.join(missing)}")
+        if header.points.has_lists:
+            raise ValueError("it is broken: its points have lists")
+        read = _ascii if header.encoding == "ascii" else _binary
+        columns = read(file, header, [names.index(axis) for axis in AXES])
+    is_single = all(header.points.properties[names.index(a)][1] == ("f4",) for a in AXES)
+    points: Points = np.stack(columns, axis=1).astype(np.float32 if is_single else np.float64)
+    return points
+
+
+def _read_header(file: IO[bytes]) -> _Header:
+    """Read a header, up to the first byte of the data."""
+    words = _header_words(file)
+    encoding, elements = "", list[_Element]()
+    try:
+        if next(words) != "ply":
+            raise _broken("it does not begin with ply")
+        for word in words:
+            if word == "format":
+                encoding, _ = next(words), next(words)
+            elif word == "element":
+                elements.append(_Element(next(words), _count(next(words))))
+            elif word == "property" and elements:
+                kinds = [next(words)]
+                if kinds == ["list"]:
+                    kinds = [next(words), next(words)]
+                elements[-1].properties.append((next(words), tuple(map(_number, kinds))))
+            else:
+                raise _broken(f"expected an element or a property, found '{word[:40]}'")
+    except StopIteration:
+        raise _broken("it ends early") from None
+    if encoding not in ORDERS:
+        raise _broken(f"the format is none of {', '.join(ORDERS)}")
+    names = [element.name for element in elements]
+    if "vertex" not in names:
+        raise ValueError("it has no points: its header has no element vertex")
+    return _Header(encoding, elements[: names.index("vertex") + 1])
+
+
+def _header_words(file: IO[bytes]) -> Iterator[str]:
+    while (line := file.readline(LONGEST_HEADER)) and file.tell() <= LONGEST_HEADER:
+        at = 0
+        while at < len(line) and (rest := line[at:].split(maxsplit=1)):
+            word = rest[0]
+            at = line.index(word, at) + len(word)
+            if word in (b"comment", b"obj_info"):
+                break
+            if word == b"end_header":
+                if line[at:].strip():  # all of a text file on one line
+                    file.seek(at - len(line), os.SEEK_CUR)
+                return
+            yield word.decode("ascii", "replace")
+    raise ValueError("it has no points: its header has no end_header")
+
+
+def _count(word: str) -> int:
+    if not word.isdecimal() or len(word) > 18:
+        raise _broken(f"a count is not a number: '{word[:40]}'")
+    return int(word)
+
+
+def _number(word: str) -> str:
+    if word not in NUMBERS:
+        raise _broken(f"the type '{word[:40]}' is unknown")
+    return NUMBERS[word]
+
+
+def _ascii(file: IO[bytes], header: _Header, axes: list[int]) -> list[npt.NDArray[Any]]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # of what is no number
+        try:
+            found = np.fromstring(file.read().decode("ascii"), sep=" ")
+        except DeprecationWarning as error:
+            raise ValueError(f"it is broken: {error}") from error
+    at = 0
+    for element in header.elements[:-1]:
+        at = _after(element, found, at)
+    columns = len(header.points.properties)
+    needed, left = header.points.count * columns, max(len(found) - at, 0)
+    if left < needed:
+        raise ValueError(f"its {header.points.count} points need {needed} numbers, found {left}")
+    table = found[at : at + needed].reshape(-1, columns)
+    return [table[:, axis] for axis in axes]
+
+
+def _after(element: _Element, numbers: npt.NDArray[np.float64], at: int) -> int:
+    """Return the index of the first number after an element."""
+    if not element.has_lists:
+        return at + element.count * len(element.properties)
+    for _ in range(element.count):
+        for _, kinds in element.properties:
+            at += 1 + (_length(numbers[at]) if len(kinds) > 1 else 0)
+    return at
+
+
+def _length(number: float) -> int:
+    if number < 0:
+        raise ValueError("it is broken: the length of a list is negative")
+    return int(number)
+
+
+def _binary(file: IO[bytes], header: _Header, axes: list[int]) -> list[npt.NDArray[Any]]:
+    order = ORDERS[header.encoding]
+    for element in header.elements[:-1]:
+        _skip(file, element, order)
+    names = [
+        (f"{at}", f"{order}{kinds[0]}") for at, (_, kinds) in enumerate(header.points.properties)
+    ]
+    record = np.dtype(names)
+    needed = header.points.count * record.itemsize
+    left = max(os.fstat(file.fileno()).st_size - file.tell(), 0)
+    if left < needed:
+        raise ValueError(f"its {header.points.count} points need {needed} bytes, found {left}")
+    records = np.frombuffer(file.read(needed), record)
+    return [records[f"{axis}"] for axis in axes]
+
+
+def _skip(file: IO[bytes], element: _Element, order: str) -> None:
+    """Skip an element of a binary file."""
+    sizes = [np.dtype(kinds[-1]).itemsize for _, kinds in element.properties]
+    if not element.has_lists:
+        file.seek(sum(sizes) * element.count, os.SEEK_CUR)
         return
-    if encoding == "ascii":
-        needed, found, what = points, len(data.splitlines()), "lines"
-    else:
-        needed, found, what = points * sum(SIZES[kind] for kind in kinds), len(data), "bytes"
-    if found < needed:
-        raise ValueError(f"its {points} points need {needed} {what}, found {found}")
+    for _ in range(element.count):
+        for size, (_, kinds) in zip(sizes, element.properties, strict=True):
+            length = 1
+            if len(kinds) > 1:
+                kind = np.dtype(f"{order}{kinds[0]}")
+                length = _length(np.frombuffer(file.read(kind.itemsize), kind)[0])
+            file.seek(size * length, os.SEEK_CUR)
 
 
-def _first_element(lines: list[list[str]]) -> tuple[int, list[str]]:
-    """Return number and types of the points; 0 if they are not the first element."""
-    at = next((i for i, line in enumerate(lines) if line[:1] == ["element"]), len(lines))
-    if at == len(lines) or lines[at][1:2] != ["vertex"]:
-        return 0, []
-    kinds = []
-    for line in lines[at + 1 :]:
-        if line[:1] == ["element"]:
-            break
-        if line[:1] == ["property"]:
-            kinds += line[1:2]
-    return int("".join(lines[at][2:3]) or 0), kinds
+def write_ply(path: Path, points: Points) -> None:
+    """Write positions (N, 3) in their own precision, as a binary file."""
+    kind = "float" if points.dtype == np.float32 else "double"
+    header = HEADER.format(points=len(points), kind=kind)
+    path.write_bytes(header.encode() + points.astype(points.dtype.newbyteorder("<")).tobytes())
+
+
+def _broken(problem: str) -> ValueError:
+    return ValueError(f"its header is broken: {problem}")

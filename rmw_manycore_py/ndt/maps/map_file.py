@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Point-cloud map files: PCD, PLY (with Open3D) and npz (the format of recordings).
+"""Point-cloud map files: PCD, PLY and npz (the format of recordings).
 
 Points keep the precision of the file: float64 or float32 (precision.py).
 """
@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from rmw_manycore_py.errors import what_is_wrong
-from rmw_manycore_py.ndt.files.cloud_file import load_open3d, map_error, read_cloud
+from rmw_manycore_py.ndt.files.cloud_file import load_open3d, map_error, read_cloud, suffix_of
 from rmw_manycore_py.ndt.files.pcd_file import write_pcd
+from rmw_manycore_py.ndt.files.ply_file import write_ply
 from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.precision import needs_doubles
@@ -28,11 +29,11 @@ def read_points(path: Path, leaf_m: float = 0.0) -> Points:
 
     :raises ManycoreError: if the file is missing, broken, empty or of another kind.
     """
-    if path.suffix not in SUFFIXES:
+    if suffix_of(path) not in SUFFIXES:
         raise map_error(path, f"expected a file that ends in {', '.join(SUFFIXES)}")
     if not path.is_file():
         raise map_error(path, "there is no such file")
-    points = _read_npz(path) if path.suffix == ".npz" else read_cloud(path)
+    points = _read_npz(path) if suffix_of(path) == ".npz" else read_cloud(path)
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) == 0:
         raise map_error(path, "it has no points: it is empty, broken, or not what its name says")
@@ -45,27 +46,16 @@ def read_points(path: Path, leaf_m: float = 0.0) -> Points:
 def write_points(path: Path, points: Points) -> None:
     """Write a map of points (N, 3) in the map frame, as float32 if that is precise enough."""
     kept = points if needs_doubles(points) else points.astype(np.float32)
-    if path.suffix == ".npz":
-        _write_npz(path, kept)
-    elif path.suffix == ".pcd":
-        write_pcd(path, kept)
-    elif path.suffix == ".ply":
-        _write_ply(path, kept)
-    else:
+    write = {".npz": _write_npz, ".pcd": write_pcd, ".ply": write_ply}.get(suffix_of(path))
+    if write is None:
         raise map_error(path, f"expected a file that ends in {', '.join(SUFFIXES)}")
+    write(path, kept)
 
 
 def _write_npz(path: Path, points: Points) -> None:
     """Write a recording of one scan with the sensor at the map's origin."""
     offsets = np.array([0, len(points)])
     np.savez_compressed(path, points=points, offsets=offsets, poses=np.eye(4)[None], note="map")
-
-
-def _write_ply(path: Path, points: Points) -> None:
-    o3d = load_open3d()
-    cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points.astype(np.float64)))
-    if not o3d.io.write_point_cloud(str(path), cloud):
-        raise map_error(path, "it cannot be written")
 
 
 def _read_npz(path: Path) -> Points:

@@ -14,6 +14,7 @@ import numpy as np
 import yaml
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.files.cloud_file import suffix_of
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.maps.map_file import SUFFIXES, read_points, write_points
 
@@ -161,7 +162,7 @@ def _listed(metadata: Path, folder: Path) -> list[Tile]:
 
 def _measured(folder: Path) -> list[Tile]:
     tiles = []
-    for path in sorted(path for path in folder.iterdir() if path.suffix in SUFFIXES):
+    for path in sorted(path for path in folder.iterdir() if suffix_of(path) in SUFFIXES):
         points = read_points(path)
         (x0, y0), (x1, y1) = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
         tiles.append(Tile(path, (float(x0), float(y0)), (float(x1), float(y1))))

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.files.cloud_file import suffix_of
 from rmw_manycore_py.ndt.recordings.bag import SUFFIXES, is_bag, open_bag
 from rmw_manycore_py.ndt.recordings.recording import Recording, load_recording
 from rmw_manycore_py.ndt.recordings.scan_folder import open_folder
@@ -24,7 +25,7 @@ def open_recording(
         return open_bag(path, poses_path, topic, pose_topic)
     if path.is_dir():
         return open_folder(path, poses_path)
-    if path.suffix != ".npz":
+    if suffix_of(path) != ".npz":
         kinds = ", ".join((".npz", *SUFFIXES))
         raise ManycoreError(
             f"{path}: no recording: expected {kinds} or a directory of scans", EXIT_BAD_INPUT

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, what_is_wrong
-from rmw_manycore_py.ndt.files.cloud_file import read_cloud
+from rmw_manycore_py.ndt.files.cloud_file import read_cloud, suffix_of
 from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.recordings.matching import recorded
@@ -43,10 +43,10 @@ class ScanFiles:
 def read_scan(path: Path) -> Points:
     """Return the points (n, 3) of a file."""
     try:
-        if path.suffix == ".bin":
-            columns = 5 if path.name.endswith(".pcd.bin") else 4
+        if suffix_of(path) == ".bin":
+            columns = 5 if path.name.lower().endswith(".pcd.bin") else 4
             return np.fromfile(path, np.float32).reshape(-1, columns)[:, :3]
-        if path.suffix == ".npy":
+        if suffix_of(path) == ".npy":
             array = np.load(path, allow_pickle=False)
             if array.ndim < 2 or array.shape[-1] < 3:
                 raise ValueError(f"expected points (n, 3 or more), found the shape {array.shape}")
@@ -72,7 +72,7 @@ def _scans_of(folder: Path) -> list[Path]:
     """Return the files of the only directory with scans, in numeric order."""
     found: dict[Path, list[Path]] = {}
     for path in folder.rglob("*"):
-        if path.suffix in SUFFIXES and len(path.relative_to(folder).parts) <= DEPTH:
+        if suffix_of(path) in SUFFIXES and len(path.relative_to(folder).parts) <= DEPTH:
             found.setdefault(path.parent, []).append(path)
     if not found:
         raise ManycoreError(

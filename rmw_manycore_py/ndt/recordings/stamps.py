@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +54,7 @@ def _unit_s(first: float, period: float) -> float:
 
 def of_names(paths: list[Path]) -> Matrix:
     """Return the times given by file names; empty if the names are no times."""
-    names = [path.name.removesuffix(".bin").removesuffix(path.suffix) for path in paths]
+    names = [re.sub(r"(\.pcd)?\.[^.]*$", "", path.name, flags=re.IGNORECASE) for path in paths]
     try:
         numbers = np.array([float(name.replace("_", ".", 1)) for name in names])
     except ValueError:

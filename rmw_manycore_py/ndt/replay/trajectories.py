@@ -42,7 +42,8 @@ def _tum_line(stamp_s: float, T: Matrix) -> str:
 
 
 def _line(numbers: Iterable[float]) -> str:
-    return " ".join(f"{number:.9g}" for number in numbers)
+    # In UTM coordinates, of thousands of kilometres, to the micrometre.
+    return " ".join(f"{number:.13g}" for number in numbers)
 
 
 def _write(path: Path, lines: Iterable[str]) -> None:

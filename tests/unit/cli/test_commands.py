@@ -55,7 +55,7 @@ def test_every_command_has_help_with_examples(path: tuple[str, ...]) -> None:
 # Modules that extras install; the command line loads without them.
 WITHOUT_EXTRAS = """
 import sys
-for name in ("aiohttp", "matplotlib", "mcap", "open3d", "perfetto", "pypcd4", "rosbags"):
+for name in ("aiohttp", "lzf", "matplotlib", "mcap", "open3d", "perfetto", "rosbags"):
     sys.modules[name] = None
 from test_commands import commands
 print(len(list(commands())))

@@ -98,7 +98,7 @@ def test_layouts(tmp_path, dtype, data):
 
 def test_as_windows_writes_it_with_holes(tmp_path):
     """Header lines end with CR LF."""
-    text = header_of(PLAIN, "ascii", points=2).decode() + "1 2 3\nnan NaN nan\n"
+    text = header_of(PLAIN, "ascii", points=2, width=2).decode() + "1 2 3\nnan NaN nan\n"
     (tmp_path / "map.pcd").write_bytes(text.replace("\n", "\r\n").encode())
     np.testing.assert_array_equal(read_pcd(tmp_path / "map.pcd"), [[1, 2, 3], [np.nan] * 3])
 
@@ -108,8 +108,8 @@ def test_as_windows_writes_it_with_holes(tmp_path):
     [
         header_of(PLAIN, "binary") + bytes(100),
         header_of(PLAIN, "ascii") + b"1 2 3\n",
-        header_of(PLAIN, "ascii", points=1) + b"1 2\n",
-        header_of(PLAIN, "ascii", points=1) + b"1 2 three\n",
+        header_of(PLAIN, "ascii", points=1, width=1) + b"1 2\n",
+        header_of(PLAIN, "ascii", points=1, width=1) + b"1 2 three\n",
         header_of(PLAIN, "zip"),
         header_of(PLAIN, "binary", names="a b c") + records_of(PLAIN).tobytes(),
         header_of(PLAIN, "binary", sizes="3 3 3"),

@@ -83,6 +83,17 @@ def test_trajectories_are_read_back(tally, tmp_path):
     np.testing.assert_allclose(reference.poses, [at(index) for index in range(5)], atol=1e-6)
 
 
+def test_trajectories_keep_millimetres_in_utm(tally, tmp_path):
+    utm_m = np.array([691_234.567, 5_334_567.891, 512.345])
+    for row in tally.rows:
+        row.reference[:3, 3] += utm_m
+    write(tally, tum=tmp_path / "poses.tum", kitti=tmp_path / "poses.txt")
+    for name in ("poses-reference.tum", "poses-reference.txt"):
+        found = read_poses(tmp_path / name).poses[:, :3, 3]
+        expected = [row.reference[:3, 3] for row in tally.rows]
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-5)
+
+
 def test_pictures_are_drawn_with_gaps_and_without_answers(tally, tmp_path):
     write(tally, plot=tmp_path / "plot.svg", picture=tmp_path / "picture.svg")
     drawn = (tmp_path / "plot.svg").read_text()

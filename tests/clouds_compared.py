@@ -1,0 +1,82 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Point clouds read by us, and by PCL (its results are kept) and Open3D (where it is there)."""
+
+from __future__ import annotations
+
+import importlib.util
+import random
+from pathlib import Path
+
+import made_clouds
+import made_ply
+import numpy as np
+from comparing import DisagreementError, run
+from pcl_results import FILE, checksum
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt.files.cloud_file import load_open3d, read_cloud
+
+OPEN3D = load_open3d() if importlib.util.find_spec("open3d") else None
+RESULTS = np.load(FILE)
+
+
+def ours(path: Path, content: bytes) -> np.ndarray | None:
+    path.write_bytes(content)
+    try:
+        return read_cloud(path)
+    except ManycoreError as error:
+        if not str(error).isprintable() or not str(error).startswith(f"map {path}: "):
+            raise DisagreementError(f"no good text: {error}") from error
+        return None
+
+
+def compare_pcd(directory: Path, number: int) -> str:
+    made = made_clouds.made(number)
+    found, real = ours(directory / "A.PCD", made.content), int(RESULTS[number])
+    if (0 if found is None else checksum(found)) != real:
+        raise DisagreementError(f"{found}, PCL {real}: {made.content!r}")
+    return "PCD refused" if found is None else "PCD read"
+
+
+def compare_ply(directory: Path, number: int) -> str:
+    made, path = made_ply.made(number), directory / "a.ply"
+    found = ours(path, made.content)
+    if made.is_cut:
+        if found is not None:
+            raise DisagreementError(f"a cut file is read: {made.content!r}")
+        return "PLY refused"
+    if found is None or not np.array_equal(found, made.points):
+        raise DisagreementError(f"{found}, written {made.points}: {made.content!r}")
+    if OPEN3D is not None and made.is_ordered:
+        real = np.asarray(OPEN3D.io.read_point_cloud(str(path)).points)
+        if not np.array_equal(real, found):
+            raise DisagreementError(f"{found}, Open3D {real}: {made.content!r}")
+    return "PLY read"
+
+
+def damaged(chance: random.Random, content: bytes) -> bytes:
+    changed = bytearray(content)
+    for _ in range(chance.choice((1, 2, 5))):
+        at = chance.randrange(len(changed))
+        what = chance.randrange(4)
+        if what == 0:
+            changed[at] ^= 1 << chance.randrange(8)
+        elif what == 1:
+            changed[at : at + 1] = chance.choice((b"-1", b"9" * 20, b"\0", b"\n", b"nan", b" "))
+        elif what == 2:
+            del changed[at : at + chance.randrange(1, 20)]
+        else:
+            changed[at:at] = changed[: chance.randrange(1, 40)]
+    return bytes(changed) or b"\0"
+
+
+def compare(directory: Path, number: int) -> str:
+    chance = random.Random(number)
+    makers = ((made_clouds, ".pcd"), (made_ply, ".ply"))
+    maker, suffix = chance.choice(makers)
+    ours(directory / f"damaged{suffix}", damaged(chance, maker.made(number).content))
+    return f"{compare_pcd(directory, number)}, {compare_ply(directory, number)}"
+
+
+if __name__ == "__main__":
+    run(compare)
