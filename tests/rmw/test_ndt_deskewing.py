@@ -61,3 +61,7 @@ def test_motion_is_taken_out_where_the_points_have_times(stack, start):
     _, report = report_on(stack, plain)
     assert "not deskewed: the cloud has none of the fields time_stamp" in report.message
     assert float(values_of(report)["distance_initial_to_result"]) > 0.5
+
+    slow = encode(sweep.points, Time(), "base_link", {"time": 60 * sweep.times_s})
+    _, report = report_on(stack, slow)
+    assert "not deskewed: the times of the points (time) span " in report.message

@@ -53,7 +53,8 @@ def read_pcd(path: Path) -> Points:
         has_points = header.points > 0
         columns = _READERS[header.encoding](file, header, axes) if has_points else _NO_COLUMNS
     number = np.float32 if numbers == {np.dtype(np.float32)} else np.float64
-    points: Points = np.stack(columns, axis=1).astype(number)
+    with np.errstate(invalid="ignore"):  # signalling nan
+        points: Points = np.stack(columns, axis=1).astype(number)
     return points
 
 

@@ -78,7 +78,8 @@ def read_ply(path: Path) -> Points:
         read = _ascii if header.encoding == "ascii" else _binary
         columns = read(file, header, [names.index(axis) for axis in AXES])
     is_single = all(header.points.properties[names.index(a)][1] == ("f4",) for a in AXES)
-    points: Points = np.stack(columns, axis=1).astype(np.float32 if is_single else np.float64)
+    with np.errstate(invalid="ignore"):  # signalling nan
+        points: Points = np.stack(columns, axis=1).astype(np.float32 if is_single else np.float64)
     return points
 
 

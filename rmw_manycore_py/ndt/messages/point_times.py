@@ -4,10 +4,13 @@
 | field | of | unit |
 |---|---|---|
 | `time_stamp` | Autoware (PointXYZIRCAEDT) | ns, or s if not an integer |
-| `timestamp` | Hesai, RoboSense | s, mostly since 1970 |
+| `timestamp` | Hesai, RoboSense; Livox | s, mostly since 1970; ns |
 | `time` | Velodyne | s |
 | `t` | Ouster | ns |
 | `offset_time` | Livox | ns |
+
+Drivers disagree on units, so the unit is one in which the points are those of one scan: the usual
+one of the datatype if that fits, else another.
 """
 
 from __future__ import annotations
@@ -22,7 +25,17 @@ from rmw_manycore_py.ndt.messages.point_cloud import decode_with
 
 FIELDS = ("time_stamp", "timestamp", "time", "t", "offset_time")
 DECIMAL = (7, 8)  # floating-point datatypes of PointField
-LONGEST_SCAN_S = 1e3  # larger values are absolute times (since 1970 or sensor start)
+# Seconds per unit, the usual one of the datatype first.
+DECIMAL_UNITS = (1.0, 1e-9, 1e-6, 1e-3)
+WHOLE_UNITS = (1e-9, 1e-6, 1e-3, 1.0)
+LONGEST_SCAN_S = 2.0  # and the longest time between its stamp and a point
+# Of a scan whose times are in an unusual unit.
+SHORTEST_ODD_SCAN_S, LONGEST_ODD_SCAN_S = 0.01, 1.0
+FASTEST_HZ = 2e7  # points; more than those of any LiDAR
+
+
+class TimesError(ValueError):
+    """Times that cannot be those of the points of one scan."""
 
 
 def time_field(message: Any) -> str | None:
@@ -31,15 +44,53 @@ def time_field(message: Any) -> str | None:
     return next((name for name in FIELDS if name in names), None)
 
 
-def decode_timed(message: Any, field: str, most: int | None = None) -> tuple[Points, Matrix]:
+def decode_timed(
+    message: Any, field: str, most: int | None = None
+) -> tuple[Points, Matrix | TimesError]:
     """Return the positions (N, 3) of a cloud, and their times (N) in seconds after its stamp.
 
     :param most: choose at most so many points of a larger cloud, as decode() does.
+    :returns: an error in place of times that are not those of a scan: the points can be used.
     :raises CloudError: for an invalid cloud.
     """
     points, times = decode_with(message, field, most)
     is_decimal = any(f.name == field and f.datatype in DECIMAL for f in message.fields)
-    times_s: Matrix = times if is_decimal else 1e-9 * times
-    if len(times_s) and np.abs(times_s).max() > LONGEST_SCAN_S:
-        times_s = times_s - seconds(message.header.stamp)
-    return points, times_s
+    units = DECIMAL_UNITS if is_decimal else WHOLE_UNITS
+    try:
+        stamp_s = seconds(message.header.stamp)
+        return points, _after_stamp(times, stamp_s, units, message.width * message.height)
+    except TimesError as error:
+        return points, TimesError(f"the times of the points ({field}) {error}")
+
+
+def _after_stamp(times: Matrix, stamp_s: float, units: tuple[float, ...], count: int) -> Matrix:
+    """Return times (N) in seconds after a stamp; raise TimesError if no unit fits.
+
+    :param count: how many points were recorded in this time.
+    """
+    if not len(times):
+        return times
+    if not np.isfinite(times).all():
+        raise TimesError("are not finite")
+    # Differences first, so that nanoseconds since 1970 keep their digits.
+    start = float(times.min())
+    after_start = times - start
+    span = float(after_start.max())
+    fitting = [unit_s for unit_s in units if _is_scan(span * unit_s, count, unit_s == units[0])]
+    # A few points, as of a narrow view, may have taken less time than any scan.
+    fitting += [units[0]] if span * units[0] <= LONGEST_SCAN_S else []
+    for unit_s in fitting:
+        for origin_s in (0.0, stamp_s):
+            shift_s = start * unit_s - origin_s
+            if abs(shift_s) <= LONGEST_SCAN_S:
+                after_stamp: Matrix = after_start * unit_s + shift_s
+                return after_stamp
+    if fitting:
+        raise TimesError(f"begin at {start:.6g}, which is neither near zero nor near the stamp")
+    raise TimesError(f"span {span:.6g}, which is no scan in s, ms, us or ns")
+
+
+def _is_scan(span_s: float, count: int, is_usual: bool) -> bool:
+    if is_usual:
+        return span_s <= LONGEST_SCAN_S and count <= 1 + FASTEST_HZ * span_s
+    return SHORTEST_ODD_SCAN_S <= span_s <= LONGEST_ODD_SCAN_S

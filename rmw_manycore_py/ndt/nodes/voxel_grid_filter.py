@@ -14,7 +14,7 @@ from sensor_msgs.msg import PointCloud2
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
 from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode, encode
-from rmw_manycore_py.ndt.messages.point_times import decode_timed, time_field
+from rmw_manycore_py.ndt.messages.point_times import TimesError, decode_timed, time_field
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 
@@ -59,10 +59,11 @@ class VoxelGridFilter(Node):
         of the moved points.
         """
         header, field = message.header, time_field(message)
-        if field is None:
-            points = voxel_centroids(decode(message), self._voxel_m)
-            return encode(points, header.stamp, header.frame_id)
-        points, times_s = decode_timed(message, field)
+        points, times_s = (decode(message), None) if field is None else decode_timed(message, field)
+        if isinstance(times_s, TimesError):
+            self.get_logger().warning(f"left out: {times_s}", throttle_duration_sec=REPEAT_S)
+        if times_s is None or isinstance(times_s, TimesError):
+            return encode(voxel_centroids(points, self._voxel_m), header.stamp, header.frame_id)
         means = voxel_centroids(np.column_stack((points, times_s)), self._voxel_m)
         thinned = means[:, :3].astype(points.dtype)
         return encode(thinned, header.stamp, header.frame_id, {"time": means[:, 3]})

@@ -11,26 +11,31 @@ import weakref
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, what_is_wrong
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.recordings.bag_poses import poses_of
 from rmw_manycore_py.ndt.recordings.connections import connections_of
+from rmw_manycore_py.ndt.recordings.cut_bag import open_cut_bag
 from rmw_manycore_py.ndt.recordings.matching import recorded
 from rmw_manycore_py.ndt.recordings.pose_file import read_poses
 from rmw_manycore_py.ndt.recordings.recording import Recording
 
 CLOUD = "sensor_msgs/msg/PointCloud2"
 SUFFIXES = (".bag", ".mcap", ".db3")
+METADATA = "metadata.yaml"
 
 
 def is_bag(path: Path) -> bool:
     """Return whether a path looks like a bag."""
-    return path.suffix in SUFFIXES or (path / "metadata.yaml").is_file()
+    if not path.is_dir():
+        return path.suffix in SUFFIXES
+    return (path / METADATA).is_file() or bool(_files_of(path))
 
 
 @dataclass(frozen=True)
@@ -60,7 +65,8 @@ class BagScans:
         at_ns = self.times_ns[index]
         with _bad_bag(f"scan {index} of the bag"):
             found = self.reader.messages(self.connections, start=at_ns, stop=at_ns + 1)
-            connection, _, data = next(iter(found))
+            nth = index - self.times_ns.index(at_ns)  # of those received at once
+            connection, _, data = next(islice(found, nth, None))
             return self.reader.deserialize(data, connection.msgtype)
 
 
@@ -71,11 +77,26 @@ class BagTimes:
     scans: BagScans
     field: str
 
-    def __getitem__(self, index: int) -> Matrix:
-        """Return the times (n) of a scan's points, in seconds after its stamp."""
+    def __getitem__(self, index: int) -> Matrix | None:
+        """Return the times (n) of a scan's points, in seconds after its stamp; None if unknown."""
+        times_s = self._found(index)
+        return None if isinstance(times_s, Exception) else times_s
+
+    def problem(self) -> str:
+        """Return why the times of the first scan are not used; "" if they are."""
+        from rmw_manycore_py.ndt.messages.point_times import TimesError
+
+        times_s = self._found(0) if self.scans.times_ns else None
+        return f"{times_s}: not used" if isinstance(times_s, TimesError) else ""
+
+    def _found(self, index: int) -> Matrix | ValueError:
+        from rmw_manycore_py.ndt.messages.point_cloud import CloudError
         from rmw_manycore_py.ndt.messages.point_times import decode_timed
 
-        return decode_timed(self.scans.message(index), self.field)[1]
+        try:
+            return decode_timed(self.scans.message(index), self.field)[1]
+        except CloudError as error:
+            return error
 
 
 def open_bag(path: Path, poses_path: Path | None, topic: str, pose_topic: str) -> Recording:
@@ -94,7 +115,7 @@ def _recording_of(
     from rmw_manycore_py.ndt.messages.conversions import seconds
     from rmw_manycore_py.ndt.messages.point_times import time_field
 
-    reader = _opened(path)
+    reader, cut = _opened(path)
     closing.callback(reader.close)
     connections = connections_of(path, reader, {CLOUD}, topic, "--topic")
     stamps, times, frames, fields = [], [], [], set()
@@ -113,7 +134,9 @@ def _recording_of(
     scans = BagScans(reader, connections, tuple(times), closing)
     field = fields.pop() if len(fields) == 1 else None
     point_times = None if field is None else BagTimes(scans, field)
-    return recorded(path, scans, len(times), np.array(stamps), line, note, point_times)
+    remarks = [cut, note, "" if point_times is None else point_times.problem()]
+    said = "; ".join(remark for remark in remarks if remark)
+    return recorded(path, scans, len(times), np.array(stamps), line, said, point_times)
 
 
 @contextmanager
@@ -127,7 +150,8 @@ def _bad_bag(what: str) -> Iterator[None]:
         raise ManycoreError(f"{what}: {error!r}", EXIT_BAD_INPUT) from error
 
 
-def _opened(path: Path) -> Any:
+def _opened(path: Path) -> tuple[Any, str]:
+    """Return a reader, and a remark if the end of the bag is missing."""
     try:
         from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
@@ -135,7 +159,23 @@ def _opened(path: Path) -> Any:
         raise ManycoreError(
             f"bags are read with rosbags ({error}): pip install 'rmw-manycore[ndt]'"
         ) from error
-    with _bad_bag(f"{path}: no bag"):
-        reader = AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY))
+    files = _files_of(path)
+    is_complete = not path.is_dir() or (path / METADATA).is_file()
+    try:
+        reader = AnyReader(
+            [path] if is_complete else files, default_typestore=get_typestore(Stores.ROS2_JAZZY)
+        )
         reader.open()
-    return reader
+    except Exception as error:  # rosbags does not document its errors
+        with _bad_bag(f"{path}: no bag"):
+            left = open_cut_bag(files)
+            if left is None:
+                raise
+        return left, f"its end is missing ({what_is_wrong(error)}): read up to there"
+    return reader, "" if is_complete else f"it has no {METADATA}: its files are read"
+
+
+def _files_of(path: Path) -> list[Path]:
+    if not path.is_dir():
+        return [path]
+    return sorted(file for file in path.iterdir() if file.suffix in SUFFIXES)

@@ -59,14 +59,11 @@ def _of_topic(path: Path, reader: Any, topic: str) -> tuple[PoseLine, str]:
     for connection, at_ns, data in reader.messages(connections):
         message = reader.deserialize(data, connection.msgtype)
         base = getattr(message, "child_frame_id", "") or BASE
-        stamp_s = seconds(message.header.stamp) or 1e-9 * at_ns
-        if stamps and stamp_s <= stamps[-1]:
-            continue
         try:
             found.append(_matrix(message, connection.msgtype))
         except PoseError as error:
             raise ManycoreError(f"{path}: {connection.topic}: {error}", EXIT_BAD_INPUT) from error
-        stamps.append(stamp_s)
+        stamps.append(seconds(message.header.stamp) or 1e-9 * at_ns)
     return PoseLine(np.array(found).reshape(-1, 4, 4), np.array(stamps)), base
 
 

@@ -13,6 +13,7 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.recordings.pose_file import PoseLine
 from rmw_manycore_py.ndt.recordings.recording import PointTimes, Recording, Scans
+from rmw_manycore_py.ndt.recordings.stamps import in_order, why_left_out
 
 
 @dataclass(frozen=True)
@@ -22,8 +23,8 @@ class SomeTimes:
     times: PointTimes
     indices: npt.NDArray[np.int64]
 
-    def __getitem__(self, index: int) -> Matrix:
-        """Return the times of a scan's points."""
+    def __getitem__(self, index: int) -> Matrix | None:
+        """Return the times of a scan's points; None if unknown."""
         return self.times[int(self.indices[index])]
 
 
@@ -50,35 +51,43 @@ def recorded(
 ) -> Recording:
     """Return a recording of `count` scans, with poses interpolated at their stamps or one per scan.
 
-    Scans outside the poses or in a gap between them are dropped; the recording's note says how
-    many.
+    Scans whose stamps do not increase, or which are outside the poses or in a gap between them, are
+    left out; the recording's note names or counts them.
 
     :raises ManycoreError: if there are neither stamps on both sides nor equally many.
     """
     if len(stamps_s) not in (0, count):
         raise ManycoreError(f"{path}: {count} scans, but {len(stamps_s)} times", EXIT_BAD_INPUT)
-    if np.any(np.diff(stamps_s) <= 0):
-        raise ManycoreError(f"{path}: the times of the scans do not increase", EXIT_BAD_INPUT)
-    if len(poses.poses) == count:
-        stamps = stamps_s if len(stamps_s) else poses.stamps
-        if not len(stamps_s) or not len(poses.stamps):
-            return Recording(scans, poses.poses, stamps, _note(path, note), point_times)
-    if len(stamps_s) and len(poses.stamps):
-        known, T = poses.at(stamps_s)
-        if len(known):
-            left_out = count - len(known)
-            lost = f"{left_out} of {count} scans have no pose" if left_out else ""
-            some = None if point_times is None else SomeTimes(point_times, known)
-            said = _note(path, note, lost)
-            return Recording(SomeScans(scans, known), T, stamps_s[known], said, some)
-        found = f"scans from {stamps_s[0]:.3f} to {stamps_s[-1]:.3f} s, poses from "
-        found += f"{poses.stamps[0]:.3f} to {poses.stamps[-1]:.3f} s"
-        raise ManycoreError(f"{path}: no scan has a pose near its time: {found}", EXIT_BAD_INPUT)
-    raise ManycoreError(
-        f"{path}: {count} scans, but {len(poses.poses)} poses: expected one for each, or times of "
-        "both (scans: times.txt or names; poses: TUM)",
-        EXIT_BAD_INPUT,
-    )
+    is_one_each = len(poses.poses) == count and not (len(stamps_s) and len(poses.stamps))
+    if not is_one_each and not (len(stamps_s) and len(poses.stamps)):
+        raise ManycoreError(
+            f"{path}: {count} scans, but {len(poses.poses)} poses: expected one for each, or times "
+            "of both (scans: times.txt or names; poses: TUM)",
+            EXIT_BAD_INPUT,
+        )
+    stamps = stamps_s if len(stamps_s) else poses.stamps
+    known = in_order(stamps) if len(stamps) else np.arange(count)
+    remarks = [note, why_left_out("scans", stamps, known)] if len(stamps) else [note]
+    if is_one_each:
+        T = poses.poses[known]
+    else:
+        ordered = in_order(poses.stamps)
+        remarks.append(why_left_out("poses", poses.stamps, ordered))
+        between, T = poses.chosen(ordered).at(stamps[known])
+        if not len(between):
+            raise ManycoreError(_no_pose(path, stamps, poses.stamps), EXIT_BAD_INPUT)
+        lost = len(known) - len(between)
+        remarks.append(f"{lost} of {count} scans have no pose" if lost else "")
+        known = known[between]
+    times = None if point_times is None else SomeTimes(point_times, known)
+    stamps = stamps[known] if len(stamps) else stamps
+    return Recording(SomeScans(scans, known), T, stamps, _note(path, *remarks), times)
+
+
+def _no_pose(path: Path, scans_s: Matrix, poses_s: Matrix) -> str:
+    found = f"scans from {scans_s[0]:.3f} to {scans_s[-1]:.3f} s, poses from "
+    found += f"{poses_s[0]:.3f} to {poses_s[-1]:.3f} s" if len(poses_s) else "none"
+    return f"{path}: no scan has a pose near its time: {found}"
 
 
 def _note(path: Path, *remarks: str) -> str:

@@ -37,8 +37,17 @@ class PoseLine:
     poses: Matrix
     stamps: Matrix
 
+    def chosen(self, indices: npt.NDArray[np.int64]) -> PoseLine:
+        """Return only these poses."""
+        return PoseLine(
+            self.poses[indices], self.stamps[indices] if len(self.stamps) else self.stamps
+        )
+
     def at(self, stamps_s: Matrix) -> tuple[npt.NDArray[np.int64], Matrix]:
-        """Return the indices of stamps that lie between poses, and the poses (n, 4, 4) there."""
+        """Return the indices of stamps that lie between poses, and the poses (n, 4, 4) there.
+
+        The stamps of the poses have to increase.
+        """
         after = np.searchsorted(self.stamps, stamps_s)
         known, found = [], []
         for index, (stamp_s, new) in enumerate(zip(stamps_s, after, strict=True)):

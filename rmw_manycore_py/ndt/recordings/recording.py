@@ -63,8 +63,8 @@ class StoredScans:
 class PointTimes(Protocol):
     """Times (n) of the points of each scan, in seconds after its stamp."""
 
-    def __getitem__(self, index: int) -> Matrix:
-        """Return the times of a scan's points, including non-finite points."""
+    def __getitem__(self, index: int) -> Matrix | None:
+        """Return the times of a scan's points, including non-finite points; None if unknown."""
         ...
 
 
@@ -101,9 +101,8 @@ class Recording:
 
     def point_times_s(self, index: int) -> Matrix | None:
         """Return the times (n) of the points of scan(), after its stamp; None if unknown."""
-        if self.point_times is None:
-            return None
-        return self.point_times[index][np.isfinite(self.scans[index]).all(axis=1)]
+        times_s = None if self.point_times is None else self.point_times[index]
+        return None if times_s is None else times_s[np.isfinite(self.scans[index]).all(axis=1)]
 
     def stamp_s(self, index: int) -> float:
         """Return the stamp of a scan; without stamps, the time after the first scan."""
@@ -138,10 +137,14 @@ class Recording:
 
 def save_recording(path: Path, drive: Recording, scale_m: float = DEFAULT_SCALE_M) -> None:
     """Write a recording as npz, with points rounded to `scale_m`."""
-    stored = stored_scans([drive.scan(index) for index in range(len(drive))], scale_m)
+    scans = [drive.scan(index) for index in range(len(drive))]
+    stored = stored_scans(scans, scale_m)
     times = [drive.point_times_s(index) for index in range(len(drive))]
-    known = [one for one in times if one is not None]
-    more: dict[str, Any] = {"times": np.concatenate(known).astype(np.float32)} if known else {}
+    more: dict[str, Any] = {}
+    if any(one is not None for one in times):
+        pairs = zip(scans, times, strict=True)  # without times, as if all were at the stamp
+        known = [np.zeros(len(scan)) if one is None else one for scan, one in pairs]
+        more["times"] = np.concatenate(known).astype(np.float32)
     np.savez_compressed(
         path,
         points=stored.points,
@@ -178,10 +181,13 @@ def load_recording(path: Path) -> Recording:
     if problem := _problem(arrays):
         raise _bad(path, problem)
     try:
+        stamps = in_seconds(arrays.get("stamps", np.zeros(0)))
+        if (np.diff(stamps) <= 0).any():
+            raise ValueError("stamps do not increase")
         return Recording(
             StoredScans(points, float(arrays.get("scale_m", 1.0)), arrays["offsets"]),
             rigid(poses),
-            in_seconds(arrays.get("stamps", np.zeros(0))),
+            stamps,
             str(arrays.get("note", "")),
             StoredTimes(arrays["times"], arrays["offsets"]) if "times" in arrays else None,
         )

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from pathlib import Path
 from typing import Any
 
@@ -16,16 +17,17 @@ from rmw_manycore_py.ndt.geometry.arrays import Matrix
 # seconds.
 EPOCHS = ((1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3), (1e8, 1.0))
 PERIODS = ((1e7, 1e-9), (1e4, 1e-6), (10.0, 1e-3), (0.0, 1.0))
+MOST_NAMED = 3
 FEWEST_DIGITS = 10  # minimum digits of a file name that is a time since 1970
 
 
 def in_seconds(stamps: npt.NDArray[Any]) -> Matrix:
-    """Return increasing times (S) in seconds; the unit is inferred from magnitude or spacing.
+    """Return times (S) in seconds; the unit is inferred from magnitude or spacing.
 
     Times since 1970 reveal their unit; otherwise the median step does: up to 10 means seconds, up
     to 10,000 milliseconds and so on.
 
-    :raises ValueError: if they are not finite or do not increase.
+    :raises ValueError: if they are not finite.
     """
     if len(stamps) == 0:
         return np.zeros(0)
@@ -35,19 +37,43 @@ def in_seconds(stamps: npt.NDArray[Any]) -> Matrix:
         raise ValueError("a stamp is not a finite number")
     if stamps.dtype.kind in "iu":
         stamps = stamps.astype(np.int64)  # differences of unsigned integers cannot be negative
-    steps = np.diff(stamps)
-    if (steps <= 0).any():
-        first = int(np.flatnonzero(steps <= 0)[0])
-        raise ValueError(f"stamps do not increase: {stamps[first]}, then {stamps[first + 1]}")
+    # Lowest and median, as single stamps may be wrong.
+    period = float(np.median(np.diff(stamps))) if len(stamps) > 1 else 0.0
+    unit_s = _unit_s(float(stamps.min()), max(period, 0.0))
     # Subtract the first before converting, so that nanoseconds since 1970 keep their last digits.
-    unit_s = _unit_s(float(stamps[0]), float(np.median(steps)) if len(steps) else 0.0)
     times: Matrix = float(stamps[0]) * unit_s + (stamps - stamps[0]).astype(np.float64) * unit_s
     return times
 
 
-def _unit_s(first: float, period: float) -> float:
+def in_order(stamps: Matrix) -> npt.NDArray[np.int64]:
+    """Return the indices of the most stamps that increase: without those set back or far ahead."""
+    lasts: list[int] = []  # of the sequences of each length, the one with the lowest end
+    before = np.full(len(stamps), -1)
+    for index, stamp in enumerate(stamps):
+        at = bisect_left(lasts, stamp, key=stamps.__getitem__)
+        if at < len(lasts) and stamps[lasts[at]] == stamp:
+            continue  # the first of equal ones stays
+        before[index] = lasts[at - 1] if at else -1
+        lasts[at : at + 1] = [index]
+    kept = lasts[-1:]
+    while kept and before[kept[-1]] >= 0:
+        kept.append(int(before[kept[-1]]))
+    return np.array(kept[::-1], np.int64)
+
+
+def why_left_out(what: str, stamps: Matrix, kept: npt.NDArray[np.int64]) -> str:
+    """Return a remark that names what is not kept; "" if all is."""
+    lost = np.setdiff1d(np.arange(len(stamps)), kept)
+    if not len(lost):
+        return ""
+    named = ", ".join(f"{index} ({stamps[index]:.3f} s)" for index in lost[:MOST_NAMED])
+    more = f" and {len(lost) - MOST_NAMED} more" if len(lost) > MOST_NAMED else ""
+    return f"left out as their times do not increase: {what} {named}{more}"
+
+
+def _unit_s(lowest: float, period: float) -> float:
     for least, unit_s in EPOCHS:
-        if first >= least:
+        if lowest >= least:
             return unit_s
     return next(unit_s for least, unit_s in PERIODS if period >= least)
 

@@ -12,7 +12,7 @@ from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.messages.conversions import seconds
 from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode
-from rmw_manycore_py.ndt.messages.point_times import FIELDS, decode_timed, time_field
+from rmw_manycore_py.ndt.messages.point_times import FIELDS, TimesError, decode_timed, time_field
 from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
 from rmw_manycore_py.ndt.nodes.scan_matcher.frame_tree import FrameError, FrameTree
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
@@ -76,7 +76,11 @@ class ScanPoints:
         if field is None:
             report.warn(f"not deskewed: the cloud has none of the fields {', '.join(FIELDS)}")
             return decode(message, self._max_points), None
-        return decode_timed(message, field, self._max_points)
+        points, times_s = decode_timed(message, field, self._max_points)
+        if isinstance(times_s, TimesError):
+            report.warn(f"not deskewed: {times_s}")
+            return points, None
+        return points, times_s
 
     def _report_delay(self, delay_s: float, report: Diagnostics) -> None:
         report.value("sensor_points_delay_time_sec", round(delay_s, 4))

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import random
 import sqlite3
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -182,6 +184,121 @@ def test_poses_of_another_time(tmp_path):
         write_scans(bag)
     with pytest.raises(ManycoreError, match="no scan has a pose near its time"):
         open_recording(bag.path)
+
+
+def data_file(bag: Bag) -> Path:
+    if bag.path.is_file():
+        return bag.path
+    (file,) = (f for f in bag.path.iterdir() if f.suffix != ".yaml")
+    return file
+
+
+@pytest.mark.parametrize(
+    ("kind", "compression"),
+    [
+        ("sqlite3", ""),
+        ("mcap", ""),
+        ("mcap", "storage"),
+        *(("ros1", c) for c in ("", "bz2", "lz4")),
+    ],
+)
+def test_a_bag_that_was_cut_is_read_up_to_there(tmp_path, kind, compression):
+    """Without what is written at the end: metadata.yaml, and a part of the file."""
+    scans = [np.tile(scan, (10, 1)) for scan in SCANS]  # some chunks
+    with Bag(tmp_path / "bag", kind, compression) as bag:
+        for i in range(600):
+            bag.write("/points", bag.cloud(0.1 * i, records_of(scans[i % COUNT])), 0.1 * i)
+            bag.write("/odom", bag.odometry(0.1 * i, POSES[i % COUNT]), 0.1 * i)
+    file = data_file(bag)
+    whole = file.read_bytes()
+    if bag.path.is_dir():
+        (bag.path / "metadata.yaml").unlink()
+    counts = []
+    for share in (0.9, 0.7, 0.45):
+        file.write_bytes(whole[: int(share * len(whole))])
+        drive = open_recording(bag.path)
+        assert "its end is missing" in drive.note
+        counts.append(len(drive))
+        for index in (0, len(drive) - 1):
+            np.testing.assert_array_equal(drive.scan(index), scans[index % COUNT])
+            np.testing.assert_allclose(drive.poses[index], POSES[index % COUNT], atol=1e-9)
+        assert drive.stamps[-1] == pytest.approx(T0_S + 0.1 * (len(drive) - 1))
+    assert 600 >= counts[0] >= counts[1] > counts[2] > 0
+    file.write_bytes(whole[:50])
+    with pytest.raises(ManycoreError, match="no bag"):
+        open_recording(bag.path)
+
+
+@pytest.mark.parametrize("kind", ["sqlite3", "mcap", "ros1"])
+def test_no_damage_leads_to_another_error(tmp_path, kind):
+    """Damaged bytes, and an end that is missing."""
+    with Bag(tmp_path / "bag", kind) as bag:
+        write_scans(bag)
+        for i, T in enumerate(POSES):
+            bag.write("/odom", bag.odometry(0.1 * i, T), 0.1 * i)
+    file = data_file(bag)
+    whole, chance = file.read_bytes(), random.Random(1)
+    for _ in range(60):
+        damaged = bytearray(whole)
+        for _ in range(chance.choice((1, 3, 20))):
+            damaged[chance.randrange(len(damaged))] = chance.randrange(256)
+        file.write_bytes(damaged[: chance.choice((None, chance.randrange(len(damaged))))])
+        try:
+            drive = open_recording(bag.path)
+            drive.scan(0)
+        except ManycoreError:
+            pass
+
+
+@pytest.mark.parametrize("kind", ["sqlite3", "mcap"])
+def test_a_bag_without_its_metadata_is_read(tmp_path, kind):
+    with Bag(tmp_path / "bag", kind) as bag:
+        write_scans(bag)
+        for i, T in enumerate(POSES):
+            bag.write("/odom", bag.odometry(0.1 * i, T), 0.1 * i)
+    (bag.path / "metadata.yaml").unlink()
+    drive = open_recording(bag.path)
+    assert len(drive) == COUNT
+    assert "it has no metadata.yaml: its files are read" in drive.note
+
+
+@pytest.mark.parametrize("wrong_s", [0.4, 0.1, 1e6])
+def test_a_scan_or_pose_with_a_wrong_stamp_costs_itself(tmp_path, wrong_s):
+    with Bag(tmp_path / "bag") as bag:
+        for i, (scan, T) in enumerate(zip(SCANS, POSES, strict=True)):
+            at_s = wrong_s if i == 5 else 0.1 * i
+            bag.write("/points", bag.cloud(at_s, records_of(scan)), 0.1 * i)
+            bag.write("/odom", bag.odometry(wrong_s if i == 8 else 0.1 * i, T), 0.1 * i)
+    drive = open_recording(bag.path)
+    assert f"scans 5 ({T0_S + wrong_s:.3f} s)" in drive.note
+    assert f"poses 8 ({T0_S + wrong_s:.3f} s)" in drive.note
+    kept = [index for index in range(COUNT) if index != 5]
+    np.testing.assert_allclose(drive.stamps, T0_S + 0.1 * np.array(kept))
+    np.testing.assert_array_equal(drive.scan(5), SCANS[6])
+
+
+def test_scans_received_at_once_are_told_apart(tmp_path):
+    with Bag(tmp_path / "bag") as bag:
+        for i, (scan, T) in enumerate(zip(SCANS, POSES, strict=True)):
+            bag.write("/points", bag.cloud(0.1 * i, records_of(scan)), 0.2 * (i // 2))
+            bag.write("/odom", bag.odometry(0.1 * i, T), 0.2 * (i // 2))
+    drive = open_recording(bag.path)
+    for index, scan in enumerate(SCANS):
+        np.testing.assert_array_equal(drive.scan(index), scan)
+
+
+def test_times_of_points_that_are_those_of_no_scan_are_not_used(tmp_path):
+    with Bag(tmp_path / "bag") as bag:
+        for i, (scan, T) in enumerate(zip(SCANS, POSES, strict=True)):
+            records = records_of(scan, "Livox")
+            records["timestamp"] = 1e9 * (T0_S + 0.1 * i) + 1e8 * np.linspace(0, 1, records.size)
+            records["timestamp"][0, 0] = 0.0 if i == 0 else records["timestamp"][0, 0]
+            bag.write("/points", bag.cloud(0.1 * i, records), 0.1 * i)
+            bag.write("/odom", bag.odometry(0.1 * i, T), 0.1 * i)
+    drive = open_recording(bag.path)
+    assert "the times of the points (timestamp) span 1.7e+18" in drive.note
+    assert drive.point_times_s(0) is None
+    assert np.ptp(drive.point_times_s(1)) == pytest.approx(0.1, abs=0.01)
 
 
 def test_a_bag_with_a_broken_message(tmp_path):

@@ -15,7 +15,7 @@ from rmw_manycore_py.ndt.recordings.opening import open_recording
 from rmw_manycore_py.ndt.recordings.pose_file import read_poses
 from rmw_manycore_py.ndt.recordings.recording import load_recording
 from rmw_manycore_py.ndt.recordings.scan_folder import read_scan
-from rmw_manycore_py.ndt.recordings.stamps import in_seconds
+from rmw_manycore_py.ndt.recordings.stamps import in_order, in_seconds
 
 GENERATOR = np.random.default_rng(4)
 SCANS = [GENERATOR.uniform(-20, 20, (50 + i, 3)).astype(np.float32) for i in range(12)]
@@ -93,11 +93,59 @@ def test_scans_of_other_kinds(tmp_path, suffix):
 
 
 @pytest.mark.parametrize("kind", [np.uint64, np.uint32, np.int16, np.float64])
-def test_stamps_of_any_type_must_increase(kind):
+def test_stamps_of_any_type(kind):
     """Differences of unsigned integers must not wrap around."""
     np.testing.assert_allclose(in_seconds(np.array([1, 2, 4], kind)), [1.0, 2.0, 4.0])
-    with pytest.raises(ValueError, match="stamps do not increase: 4"):
-        in_seconds(np.array([1, 4, 2], kind))
+    np.testing.assert_allclose(in_seconds(np.array([1, 4, 2], kind)), [1.0, 4.0, 2.0])
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_as_many_stamps_as_can_be_kept_increase(seed):
+    stamps = np.random.default_rng(seed).integers(0, 12, 12).astype(float)
+    most = [1] * len(stamps)
+    for late, early in ((b, a) for b in range(len(stamps)) for a in range(b)):
+        if stamps[early] < stamps[late]:
+            most[late] = max(most[late], most[early] + 1)
+    kept = in_order(stamps)
+    assert len(kept) == max(most)
+    assert (np.diff(kept) > 0).all()
+    assert (np.diff(stamps[kept]) > 0).all()
+
+
+@pytest.mark.parametrize(
+    ("changes", "lost"),
+    [
+        ({5: 0.4}, "scans 5 (0.400 s)"),  # twice: the first one stays
+        ({5: 0.1}, "scans 5 (0.100 s)"),
+        ({5: 1e6}, "scans 5 (1000000.000 s)"),
+        ({0: 7e5, 3: 0.0, 7: 0.6, 9: 0.1}, "0 (700000.000 s), 3 (0.000 s), 7 (0.600 s) and 1 more"),
+    ],
+)
+def test_a_scan_with_a_wrong_stamp_is_left_out_and_named(tmp_path, changes, lost):
+    folder = kitti_folder(tmp_path / "drive")
+    times_s = 0.1 * np.arange(len(SCANS))
+    times_s[list(changes)] = list(changes.values())
+    (folder / "poses.txt").write_text(kitti(POSES))
+    (folder / "times.txt").write_text("".join(f"{time_s:.6f}\n" for time_s in times_s))
+    drive = open_recording(folder)
+    assert lost in drive.note
+    kept = [index for index in range(len(SCANS)) if index not in changes]
+    np.testing.assert_allclose(drive.stamps, times_s[kept])
+    for place, index in enumerate(kept):
+        np.testing.assert_allclose(drive.scan(place), SCANS[index])
+        np.testing.assert_allclose(drive.poses[place], POSES[index], atol=1e-6)
+
+
+def test_a_pose_with_a_wrong_stamp_is_left_out_and_named(tmp_path):
+    folder = kitti_folder(tmp_path / "drive")
+    stamps = 0.1 * np.arange(len(SCANS))
+    wrong = stamps.copy()
+    wrong[4] = 0.2
+    (tmp_path / "poses.tum").write_text(tum(POSES, wrong))
+    (folder / "times.txt").write_text("".join(f"{time_s:.6f}\n" for time_s in stamps))
+    drive = open_recording(folder, tmp_path / "poses.tum")
+    assert "poses 4 (0.200 s)" in drive.note
+    np.testing.assert_allclose(drive.poses, POSES, atol=0.03)  # interpolated there
 
 
 @pytest.mark.parametrize("unit_s", [1.0, 1e-3, 1e-6, 1e-9])
@@ -126,7 +174,6 @@ def test_an_npz_of_other_arrays(tmp_path):
         ("1 2 3 4 5 6 7 8\n1 2", "pose 1 is '1 2'"),
         (kitti(POSES * 2), "pose 0 holds no rotation"),
         ("1 0 0 0 0 0 0 0", "a quaternion is zero"),
-        (tum(POSES[:2], np.array([2.0, 1.0])), "stamps do not increase"),
     ],
 )
 def test_poses_that_are_none(tmp_path, text, words):
