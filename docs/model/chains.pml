@@ -106,15 +106,20 @@ proctype Changer() {
   } unless { killed }
 }
 
-/* The next owner of the lock rebuilds all links, from the oldest endpoint on. */
+inline relink(i) {
+  next[i] = behind[chain[i]];
+  behind[chain[i]] = i
+}
+
+/* The next owner of the lock stores all links, from the oldest endpoint on, and the buckets last. */
 proctype Repairer() {
-  byte i, o;
-  killed -> first[0] = NOTHING;
-  first[1] = NOTHING;
+  byte i, o, behind[2];
+  killed -> behind[0] = NOTHING;
+  behind[1] = NOTHING;
 #if BUG == 5
   for (i : 0 .. SLOTS - 1) {
     if
-    :: live[i] -> link(i)
+    :: live[i] -> relink(i)
     :: else
     fi
   }
@@ -122,12 +127,14 @@ proctype Repairer() {
   for (o : 1 .. last_order) {
     for (i : 0 .. SLOTS - 1) {
       if
-      :: live[i] && order[i] == o -> link(i)
+      :: live[i] && order[i] == o -> relink(i)
       :: else
       fi
     }
   }
 #endif
+  first[0] = behind[0];
+  first[1] = behind[1]
 }
 
 proctype Killer() {

@@ -3,7 +3,9 @@
 // The chains of endpoints by topic, which a new endpoint walks without the registry lock.
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <csignal>
+#include <thread>
 
 #include "child.hpp"
 #include "messages.hpp"
@@ -91,6 +93,31 @@ TEST_CASE("older endpoints are found by age, not by slot, also after a repair") 
   CHECK(f.older() == expected);
   f.third.reset();
   CHECK(f.older() == Slots{expected[0], expected[2]});
+}
+
+// Cannot prove that each moment of a repair is harmless; the walks meet many of them.
+TEST_CASE("a walk from the bucket misses no endpoint while repairs run") {
+  Fixture f;
+  std::atomic<bool> is_repairing{true};
+  uint64_t walks = 0;
+  uint64_t short_walks = 0;
+  std::thread walker([&] {
+    while (is_repairing) {
+      Slots visited;
+      f.registry.for_each_of_bucket(
+        "/chain", Registry::Chain::live, [&](uint32_t slot) { visited.push_back(slot); });
+      short_walks += visited.size() == 4 ? 0 : 1;
+      ++walks;
+    }
+  });
+  for (int repair = 0; repair < 2'000; ++repair) {
+    f.registry.header().needs_repair = 1;
+    const Registry::Lock repairs(f.registry);
+  }
+  is_repairing = false;
+  walker.join();
+  CHECK(walks > 0);
+  CHECK(short_walks == 0);
 }
 
 TEST_CASE("a walk goes back when its current endpoint has moved to another chain") {

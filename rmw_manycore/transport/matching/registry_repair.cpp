@@ -194,37 +194,54 @@ void Registry::mark_blocks_in_hands() noexcept {
   }
 }
 
-/// In the order in which they were linked: a concurrent walk to older endpoints continues.
-void Registry::link_all_endpoints() {
-  RegistryHeader & head = header();
-  for (uint32_t i = 0; i < topic_bucket_count; ++i) {
-    head.topic_buckets[i].store(nothing, std::memory_order_relaxed);
-    head.orphan_buckets[i].store(nothing, std::memory_order_relaxed);
-  }
-  head.closing.clear();
-  head.closing_count = 0;
-  std::vector<uint32_t> linked;
+std::vector<uint32_t> Registry::endpoints_from_oldest(Chain chain) const {
+  std::vector<uint32_t> found;
   for (uint32_t slot = 0; slot < endpoints_.high_water(); ++slot) {
     const SlotState state = endpoints_[slot].slot.state.load(std::memory_order_acquire);
-    if (state == SlotState::free) {
-      continue;
+    const bool is_orphan = state != SlotState::free && state != SlotState::live &&
+                           state != SlotState::unreachable &&
+                           endpoints_[slot].kind == EndpointKind::publisher;
+    if (chain == Chain::live ? state == SlotState::live : is_orphan) {
+      found.push_back(slot);
     }
-    if (state != SlotState::live) {
+  }
+  const uint32_t last = header().last_order;
+  std::sort(found.begin(), found.end(), [&](uint32_t a, uint32_t b) {
+    return last - endpoints_[a].order > last - endpoints_[b].order;
+  });
+  return found;
+}
+
+/// In the order in which they were linked, and each bucket last: a concurrent walk misses none,
+/// because the buckets lead to what the dead owner left, which is whole, and each link leads to an
+/// older endpoint.
+void Registry::link_all_of(Chain chain) {
+  std::vector<uint32_t> youngest(topic_bucket_count, nothing);
+  for (const uint32_t slot : endpoints_from_oldest(chain)) {
+    uint32_t & next = youngest[endpoints_[slot].topic_hash % topic_bucket_count];
+    link_before(slot, next);
+    next = slot;
+  }
+  for (uint32_t bucket = 0; bucket < topic_bucket_count; ++bucket) {
+    buckets(chain)[bucket].store(youngest[bucket], std::memory_order_release);
+  }
+}
+
+/// The live endpoints first: one that is closing may still be among them, and leads to older ones
+/// until it gets its place among the orphans.
+void Registry::link_all_endpoints() {
+  RegistryHeader & head = header();
+  head.closing.clear();
+  head.closing_count = 0;
+  for (uint32_t slot = 0; slot < endpoints_.high_water(); ++slot) {
+    const SlotState state = endpoints_[slot].slot.state.load(std::memory_order_acquire);
+    if (state != SlotState::free && state != SlotState::live) {
       head.closing.add(slot);
       ++head.closing_count;
     }
-    const bool is_orphan = state != SlotState::live && state != SlotState::unreachable &&
-                           endpoints_[slot].kind == EndpointKind::publisher;
-    if (state == SlotState::live || is_orphan) {
-      linked.push_back(slot);
-    }
   }
-  std::sort(linked.begin(), linked.end(), [&](uint32_t a, uint32_t b) {
-    return head.last_order - endpoints_[a].order > head.last_order - endpoints_[b].order;
-  });
-  for (const uint32_t slot : linked) {
-    link_endpoint(slot, endpoints_.is_live(slot) ? Chain::live : Chain::orphans);
-  }
+  link_all_of(Chain::live);
+  link_all_of(Chain::orphans);
 }
 
 }  // namespace manycore

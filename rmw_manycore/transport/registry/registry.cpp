@@ -216,11 +216,12 @@ const TopicEntry * Registry::find_topic(const std::string & name) const noexcept
   return nullptr;
 }
 
+std::atomic<uint32_t> * Registry::buckets(Chain chain) const noexcept {
+  return chain == Chain::live ? header().topic_buckets : header().orphan_buckets;
+}
+
 std::atomic<uint32_t> & Registry::bucket_of(uint64_t topic_hash, Chain chain) const noexcept {
-  RegistryHeader & head = header();
-  return (
-    chain == Chain::live ? head.topic_buckets
-                         : head.orphan_buckets)[topic_hash % topic_bucket_count];
+  return buckets(chain)[topic_hash % topic_bucket_count];
 }
 
 // The lock excludes concurrent changes of chains. Graph reads without the lock check afterwards
@@ -228,18 +229,21 @@ std::atomic<uint32_t> & Registry::bucket_of(uint64_t topic_hash, Chain chain) co
 // for_each_older().
 constexpr auto chained = std::memory_order_relaxed;
 
-/// At each instruction a chain holds its old or its new content. If this process dies in between,
-/// only `previous_of_topic` and what repair() rebuilds may be wrong.
-void Registry::link_endpoint(uint32_t slot, Chain chain) noexcept {
+void Registry::link_before(uint32_t slot, uint32_t next) noexcept {
   EndpointEntry & entry = endpoints_[slot];
-  std::atomic<uint32_t> & bucket = bucket_of(entry.topic_hash, chain);
-  const uint32_t next = bucket.load(chained);
   entry.previous_of_topic = nothing;
   // Release: a walk that loads the link also sees the slot's new incarnation.
   entry.next_of_topic.store(next, std::memory_order_release);
   if (next < endpoints_.high_water()) {
     endpoints_[next].previous_of_topic = slot;
   }
+}
+
+/// At each instruction a chain holds its old or its new content. If this process dies in between,
+/// only `previous_of_topic` and what repair() rebuilds may be wrong.
+void Registry::link_endpoint(uint32_t slot, Chain chain) noexcept {
+  std::atomic<uint32_t> & bucket = bucket_of(endpoints_[slot].topic_hash, chain);
+  link_before(slot, bucket.load(chained));
   bucket.store(slot, chained);
 }
 

@@ -188,7 +188,9 @@ public:
 
 private:
   friend class Lock;
+  std::atomic<uint32_t> * buckets(Chain chain) const noexcept;
   std::atomic<uint32_t> & bucket_of(uint64_t topic_hash, Chain chain) const noexcept;
+  void link_before(uint32_t slot, uint32_t next) noexcept;
   std::atomic<uint32_t> * link_to(uint32_t slot, Chain chain) noexcept;
   std::optional<uint32_t> next_of(uint32_t slot, uint32_t incarnation) const noexcept;
   /// Takes the lock by `take`, and repairs what a former owner left incomplete.
@@ -203,6 +205,8 @@ private:
   void mark_blocks_of(EndpointEntry & entry) noexcept;
   void mark_blocks_in_hands() noexcept;
   void link_all_endpoints();
+  void link_all_of(Chain chain);
+  std::vector<uint32_t> endpoints_from_oldest(Chain chain) const;
 
   PlatformPaths paths_;
   SharedMemory memory_;
