@@ -167,6 +167,12 @@ void SharedMemory::populate(uint64_t offset, uint64_t length) const noexcept {
   madvise(data_ + first, page_ceil(offset + length) - first, MADV_POPULATE_WRITE);
 }
 
+bool SharedMemory::copy_out(uint64_t offset, void * to, size_t length) const noexcept {
+  const int fd = file_.get();
+  return fd >= 0 &&
+         pread(fd, to, length, static_cast<off_t>(offset)) == static_cast<ssize_t>(length);
+}
+
 void SharedMemory::release(uint64_t offset, uint64_t length) const noexcept {
   const uint64_t first = page_ceil(offset);
   const uint64_t end = page_floor(offset + length);

@@ -62,6 +62,11 @@ public:
   void reserve_and_populate(uint64_t offset, uint64_t length) const;
   /// Maps the pages of a reserved range into this process, so that the first access does not fault.
   void populate(uint64_t offset, uint64_t length) const noexcept;
+  /// Copies a range by the file, not by the mapping: a page that was released reads as zeros and
+  /// gets no memory, whereas a load would allocate it, and raise SIGBUS if the file system is full.
+  /// Words that others write meanwhile may be of different moments. False without a file
+  /// descriptor.
+  bool copy_out(uint64_t offset, void * to, size_t length) const noexcept;
   /// Returns the whole pages inside the range to the system; they read as zero afterwards.
   void release(uint64_t offset, uint64_t length) const noexcept;
 

@@ -87,7 +87,11 @@ void SteppedChild::run_to_system_call() { resume(PTRACE_SYSCALL); }
 
 void SteppedChild::resume(int request) {
   ptrace(static_cast<__ptrace_request>(request), pid(), nullptr, nullptr);
-  finished_ = wait_for_stop(pid()) == finish_signal;
+  const int stopped_by = wait_for_stop(pid());
+  if (stopped_by == SIGBUS || stopped_by == SIGSEGV) {
+    throw std::runtime_error("a stepped process has accessed memory that is not there");
+  }
+  finished_ = stopped_by == finish_signal;
 }
 
 void SteppedChild::end_main_thread() {

@@ -4,11 +4,16 @@
 // no reader, and entries are read consistently.
 #include <doctest/doctest.h>
 
+#include <fcntl.h>
+#include <sys/mount.h>
+
 #include <csignal>
 #include <thread>
 
 #include "messages.hpp"
 #include "node_role.hpp"
+#include "private_shm.hpp"
+#include "stepped_child.hpp"
 #include "transport/registry/snapshot.hpp"
 #include "waiting.hpp"
 
@@ -39,6 +44,75 @@ const Role changer("changer", [](Lines & test, const Arguments & arguments) {
   test.say("changing");
   raise(SIGSTOP);
 });
+
+/// Reads the activity of all endpoints in a loop, and reports after each look.
+const Role counter("counter", [](Lines & test, const Arguments & arguments) {
+  Registry registry(PlatformPaths::of(arguments.at(0)));
+  Graph graph(registry);
+  graph.activity();  // maps the cluster
+  begin_steps();
+  while (true) {
+    graph.activity();
+    test.say("read");
+  }
+});
+
+/// Fills /dev/shm up to its last page during its lifetime.
+class FullFileSystem {
+public:
+  FullFileSystem() : file_(open("/dev/shm", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600)) {
+    require(static_cast<bool>(file_));
+    off_t used = 0;
+    for (off_t step = 1 << 20; step >= static_cast<off_t>(page_bytes);) {
+      if (posix_fallocate(file_.get(), used, step) == 0) {
+        used += step;
+      } else {
+        step /= 2;
+      }
+    }
+  }
+
+private:
+  FileDescriptor file_;
+};
+
+/// A subscription whose memory makes a hole when it is freed, from its head on. Its slot is the
+/// first one, which a read comes to first.
+class DeepSubscription {
+public:
+  explicit DeepSubscription(const TestPlatform & platform)
+  : process_(platform.join()), inspection_(platform) {
+    auto first_slot = process_->create_publisher(on_topic("/slot", keep_last(1)));
+    create();
+    while (!is_page_aligned()) {
+      destroy();
+      in_front_.push_back(process_->create_subscription(on_topic("/in_front", keep_last(1))));
+      create();
+    }
+    destroy();
+    first_slot.reset();
+    inspection_.wait_until_swept();
+    create();
+    require(is_page_aligned() && inspection_.slot_of(subscription_->gid()) == 0);
+  }
+  void create() {
+    subscription_ = process_->create_subscription(on_topic("/x", keep_last(65'535)));
+  }
+  void destroy() {
+    subscription_.reset();
+    inspection_.wait_until_swept();
+  }
+
+private:
+  bool is_page_aligned() {
+    return reinterpret_cast<uintptr_t>(&inspection_.header_of(*subscription_)) % page_bytes == 0;
+  }
+
+  std::shared_ptr<Process> process_;
+  Inspection inspection_;
+  std::vector<std::unique_ptr<Subscription>> in_front_;
+  std::unique_ptr<Subscription> subscription_;
+};
 
 /// A name of one repeated letter, nearly of maximum length.
 std::string long_name(char letter) { return "/" + std::string(200, letter); }
@@ -171,6 +245,34 @@ TEST_CASE("a read concurrent with a change is repeated, but a bounded number of 
   CHECK(read_between_changes(registry, [](bool is_changing) { return is_changing; }));
 }
 
+TEST_CASE("a read follows no reference to memory that is freed after one of its instructions") {
+  if (!has_private_shm()) {
+    return;  // never fills the machine's /dev/shm
+  }
+  wait_until_private_shm_is_free();
+  REQUIRE(mount("tmpfs", "/dev/shm", "tmpfs", MS_REMOUNT, "size=8m") == 0);
+  {
+    TestPlatform platform;
+    DeepSubscription subscription(platform);
+    SteppedChild child("counter", {platform.name()});
+    constexpr uint64_t more_than_the_entry_takes = 1'600;
+    for (uint64_t instructions = 0; instructions < more_than_the_entry_takes; instructions += 20) {
+      CAPTURE(instructions);
+      child.step(instructions);
+      subscription.destroy();
+      {
+        const FullFileSystem full;
+        while (!child.lines().has_news()) {
+          child.run_to_system_call();
+        }
+        REQUIRE(child.hear() == "read");
+      }
+      subscription.create();
+    }
+  }
+  REQUIRE(mount("tmpfs", "/dev/shm", "tmpfs", MS_REMOUNT, "size=50%") == 0);
+}
+
 TEST_CASE("activity reports the counters of endpoints and the length of their queues") {
   TestPlatform platform;
   const auto process = platform.join();
@@ -189,4 +291,6 @@ TEST_CASE("activity reports the counters of endpoints and the length of their qu
   CHECK(rows[1].counters.messages == 1);
   CHECK(rows[1].queued == 2);
   CHECK(rows[1].capacity == 10);
+  CHECK(process->graph().activity_of(subscription->gid())->queued == 2);
+  CHECK_FALSE(process->graph().activity_of(Gid{}).has_value());
 }

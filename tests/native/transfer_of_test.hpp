@@ -74,7 +74,7 @@ struct Fixture {
   CounterValues counters(EndpointKind kind) {
     for (const EndpointInfo & info : process->graph().endpoints_of("/x")) {
       if (info.kind == kind) {
-        return info.counters;
+        return process->graph().activity_of(info.gid)->counters;
       }
     }
     return {};

@@ -54,7 +54,7 @@ public:
 
   std::vector<EndpointRow> endpoints() const {
     const std::vector<NodeInfo> nodes = view().graph.nodes();
-    return with_node_names(view().graph.endpoints(), nodes);
+    return rows_of(view().graph, view().graph.endpoints(), nodes);
   }
 
   uint64_t graph_generation() const { return view().graph.generation(); }

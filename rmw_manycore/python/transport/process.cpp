@@ -100,7 +100,7 @@ public:
   }
   std::vector<EndpointRow> endpoints_of(const std::string & topic) const {
     const std::vector<NodeInfo> nodes = member()->graph().nodes();
-    return with_node_names(member()->graph().endpoints_of(topic), nodes);
+    return rows_of(member()->graph(), member()->graph().endpoints_of(topic), nodes);
   }
   uint64_t graph_generation() const { return member()->graph().generation(); }
   void watch_graph() { member()->waiters().watch_graph(common_word); }

@@ -107,15 +107,20 @@ void bind_endpoint_info(nb::module_ & module) {
 
 }  // namespace
 
-std::vector<EndpointRow> with_node_names(
-  std::vector<EndpointInfo> endpoints, const std::vector<NodeInfo> & nodes) {
+std::vector<EndpointRow> rows_of(
+  const Graph & graph, std::vector<EndpointInfo> endpoints, const std::vector<NodeInfo> & nodes) {
   std::unordered_map<uint32_t, const NodeInfo *> by_handle;
   for (const NodeInfo & node : nodes) {
     by_handle.emplace(node.handle, &node);
   }
   std::vector<EndpointRow> rows;
   for (EndpointInfo & endpoint : endpoints) {
-    EndpointRow & row = rows.emplace_back(EndpointRow{std::move(endpoint), "", ""});
+    const std::optional<Activity> activity = graph.activity_of(endpoint.gid);
+    if (!activity) {
+      continue;
+    }
+    EndpointRow & row =
+      rows.emplace_back(EndpointRow{std::move(endpoint), activity->counters, "", ""});
     const auto node = by_handle.find(row.node);
     if (node != by_handle.end()) {
       row.node_name = node->second->name;

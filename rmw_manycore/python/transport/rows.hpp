@@ -26,14 +26,16 @@ struct ClusterRow : ClusterInfo {
   bool alive;  ///< its receive thread lives
 };
 
-/// An endpoint with the name of its node.
+/// An endpoint with its counters and the name of its node.
 struct EndpointRow : EndpointInfo {
+  CounterValues counters;
   std::string node_name;
   std::string node_namespace;
 };
 
-/// Adds to each endpoint the name and namespace of its node; empty if the node is gone.
-std::vector<EndpointRow> with_node_names(
-  std::vector<EndpointInfo> endpoints, const std::vector<NodeInfo> & nodes);
+/// Adds to each endpoint its counters, and name and namespace of its node; empty if the node is
+/// gone. Leaves out endpoints that have left meanwhile.
+std::vector<EndpointRow> rows_of(
+  const Graph & graph, std::vector<EndpointInfo> endpoints, const std::vector<NodeInfo> & nodes);
 
 }  // namespace manycore::python

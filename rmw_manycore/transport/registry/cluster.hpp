@@ -69,6 +69,12 @@ public:
     return offset % alignof(T) == 0 && contains(offset, length) ? &memory_.at<T>(offset) : nullptr;
   }
 
+  /// Copies a range that may be freed meanwhile, even if this process follows its reference neither
+  /// in a phase nor under the registry lock. See SharedMemory::copy_out().
+  bool copy_out(uint64_t offset, void * to, size_t length) const noexcept {
+    return contains(offset, length) && memory_.copy_out(offset, to, length);
+  }
+
   /// Throws Error{no_space} unless `length` bytes of messages leave the control reserve of the
   /// SMEM. The caller holds the registry lock.
   void require_message_room(uint64_t length) const;

@@ -5,43 +5,37 @@
 
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/registry/snapshot.hpp"
+#include "transport/registry/subscription_copy.hpp"
 
 namespace manycore {
 namespace {
 
-CounterValues read_counters(Registry & registry, const EndpointEntry & entry) {
-  const EndpointCounters & counters = entry.counters;
-  CounterValues values{counters.messages.load(), counters.bytes.load(),
-                       counters.lost.load(),     counters.expired.load(),
-                       counters.refused.load(),  counters.overwritten.load(),
-                       counters.dropped.load()};
-  if (entry.kind == EndpointKind::subscription) {
-    const auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
-    values.lost =
-      header == nullptr ? values.lost : lost_so_far(entry, *header, header->displaced().hints);
-  }
-  return values;
+CounterValues values_of(const EndpointCounters & counters) {
+  return {counters.messages.load(), counters.bytes.load(),   counters.lost.load(),
+          counters.expired.load(),  counters.refused.load(), counters.overwritten.load(),
+          counters.dropped.load()};
 }
 
 Activity activity_of(Registry & registry, const EndpointEntry & entry) {
   Activity activity;
   activity.endpoint = endpoint_in(entry.gid);
-  activity.counters = read_counters(registry, entry);
-  if (entry.kind == EndpointKind::subscription) {
-    const auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
-    if (header != nullptr) {
-      const uint64_t head = header->head.load(std::memory_order_acquire);
-      activity.capacity = header->depth;
-      activity.queued = std::min(header->tail.load() - head, activity.capacity);
-      activity.deadlines_missed = header->deadline.missed(entry.qos.deadline_ns).total;
-    }
+  activity.counters = values_of(entry.counters);
+  const Cluster * const cluster = entry.kind == EndpointKind::subscription
+                                    ? registry.clusters().find(entry.block.cluster())
+                                    : nullptr;
+  SubscriptionCopy copy;
+  if (cluster != nullptr && copy.take(*cluster, entry.block.offset())) {
+    const SubscriptionHeader & header = *copy;
+    activity.counters.lost = lost_so_far(entry, header, header.displaced().hints);
+    activity.capacity = header.depth;
+    activity.queued = std::min(header.tail.load() - header.head.load(), activity.capacity);
+    activity.deadlines_missed = header.deadline.missed(entry.qos.deadline_ns).total;
   }
   return activity;
 }
 
-EndpointInfo describe(Registry & registry, const EndpointEntry & entry) {
+EndpointInfo describe(uint32_t, const EndpointEntry & entry) {
   EndpointInfo info;
-  info.counters = read_counters(registry, entry);
   info.kind = entry.kind;
   info.role = entry.role;
   info.topic = text_of(entry.topic);
@@ -60,17 +54,13 @@ EndpointInfo describe(Registry & registry, const EndpointEntry & entry) {
 }
 
 std::vector<EndpointInfo> all_endpoints(Registry & registry) {
-  return list_live<EndpointInfo>(registry.endpoints(), [&](uint32_t, const EndpointEntry & entry) {
-    return describe(registry, entry);
-  });
+  return list_live<EndpointInfo>(registry.endpoints(), describe);
 }
 
 std::vector<EndpointInfo> chained_endpoints(Registry & registry, const std::string & topic) {
   std::vector<EndpointInfo> all;
   registry.for_each_of_bucket(topic.c_str(), Registry::Chain::live, [&](uint32_t slot) {
-    append_live(registry.endpoints(), slot, all, [&](uint32_t, const EndpointEntry & entry) {
-      return describe(registry, entry);
-    });
+    append_live(registry.endpoints(), slot, all, describe);
   });
   return all;
 }
@@ -129,8 +119,18 @@ std::vector<EndpointInfo> Graph::endpoints() const {
 
 std::vector<Activity> Graph::activity() const {
   return list_live<Activity>(registry_.endpoints(), [&](uint32_t, const EndpointEntry & entry) {
-    return activity_of(registry_, entry);
+    return manycore::activity_of(registry_, entry);
   });
+}
+
+std::optional<Activity> Graph::activity_of(const Gid & endpoint) const {
+  const auto slot = static_cast<uint32_t>(endpoint_in(endpoint));
+  std::vector<Activity> found;
+  append_live(registry_.endpoints(), slot, found, [&](uint32_t, const EndpointEntry & entry) {
+    return manycore::activity_of(registry_, entry);
+  });
+  const bool is_there = !found.empty() && found[0].endpoint == endpoint_in(endpoint);
+  return is_there ? std::optional(found[0]) : std::nullopt;
 }
 
 std::vector<Death> Graph::deaths() const {

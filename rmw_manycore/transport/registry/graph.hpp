@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -66,7 +67,6 @@ struct EndpointInfo {
   uint32_t cluster = 0;
   MatchedCount matched;
   IncompatibleCount incompatible;
-  CounterValues counters;
   Transfer transfer = Transfer::dsm;  ///< of the topic
 };
 
@@ -92,9 +92,10 @@ public:
   std::vector<ClusterInfo> clusters() const;
   std::vector<NodeInfo> nodes() const;
   std::vector<EndpointInfo> endpoints() const;
-  /// A small part of endpoints(), for frequent polling. Each row is consistent in itself; rows may
-  /// be of different moments.
+  /// Activity of all endpoints. Each row is consistent in itself; rows may be of different moments.
   std::vector<Activity> activity() const;
+  /// Activity of one endpoint, if it still exists.
+  std::optional<Activity> activity_of(const Gid & endpoint) const;
   /// Deaths still recorded, oldest first.
   std::vector<Death> deaths() const;
   /// Endpoints of one topic or service; a constant-time lookup by name.
