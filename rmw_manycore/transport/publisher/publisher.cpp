@@ -117,7 +117,14 @@ void Publisher::Impl::notify_event_watchers() {
   notify_readers_of_event();
 }
 
+/// Wakes all processes if the list of readers lacks some.
 void Publisher::Impl::notify_readers_of_event() noexcept {
+  if (!writer.readers().is_complete()) {
+    for (uint32_t process = 0; process < registry.processes().high_water(); ++process) {
+      manycore::notify_event_watchers(registry, process);
+    }
+    return;
+  }
   for (const Reader & reader : writer.readers().all()) {
     reader.wake->notify_events();
   }

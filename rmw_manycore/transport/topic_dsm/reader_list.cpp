@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "transport/registry/endpoint_blocks.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
 
 namespace manycore {
@@ -41,44 +42,71 @@ Reader ReaderList::resolve(ReaderEntry & entry) {
   return reader;
 }
 
-void ReaderList::throw_unresolved(const std::string & topic) const {
-  throw Error(
-    unresolved_->code(),
-    "cannot publish on '" + topic + "': cannot reach a subscription: " + unresolved_->what());
+void ReaderList::throw_failure(const std::string & topic) const {
+  try {
+    std::rethrow_exception(failure_);
+  } catch (const Error & error) {
+    throw Error(
+      error.code(),
+      "cannot publish on '" + topic + "': cannot reach a subscription: " + error.what());
+  }
 }
 
 void ReaderList::add(ReaderEntry & entry, uint32_t index) {
   try {
-    readers_.push_back(resolve(entry));
-    readers_.back().index = index;
-  } catch (const Error & error) {
-    unresolved_ = error;
+    next_.push_back(resolve(entry));
+    next_.back().index = index;
+  } catch (const Error &) {
+    failure_ = std::current_exception();
   }
 }
 
-void ReaderList::rebuild() {
+void ReaderList::copy_table() {
   do {
     seen_ = dsm_.match_generation.load(std::memory_order_seq_cst);
-    readers_.clear();
-    unresolved_.reset();
+    next_.clear();
+    failure_ = nullptr;
     visit_reader_table(cluster_, dsm_, [&](ReaderEntry & entry, uint32_t index) {
       if (entry.active.load(std::memory_order_acquire) != 0) {
         add(entry, index);
       }
       return false;
     });
-  } while (dsm_.match_generation.load(std::memory_order_seq_cst) != seen_);
-  if (unresolved_) {
+  } while (!is_current());
+  // Group readers by process, so that each process is woken once.
+  std::sort(
+    next_.begin(), next_.end(), [](const Reader & a, const Reader & b) { return a.wake < b.wake; });
+  next_by_gid_.resize(next_.size());
+  std::iota(next_by_gid_.begin(), next_by_gid_.end(), 0);
+  std::sort(next_by_gid_.begin(), next_by_gid_.end(), [this](uint32_t a, uint32_t b) {
+    return next_[a].gid < next_[b].gid;
+  });
+}
+
+bool ReaderList::rebuild() noexcept {
+  bool is_copied = true;
+  try {
+    copy_table();
+    readers_.swap(next_);
+    by_gid_.swap(next_by_gid_);
+  } catch (...) {
+    failure_ = std::current_exception();
+    is_copied = false;
+  }
+  if (failure_) {
     seen_ = outdated;
   }
-  // Group readers by process, so that each process is woken once.
-  std::sort(readers_.begin(), readers_.end(), [](const Reader & a, const Reader & b) {
-    return a.wake < b.wake;
-  });
-  by_gid_.resize(readers_.size());
-  std::iota(by_gid_.begin(), by_gid_.end(), 0);
-  std::sort(by_gid_.begin(), by_gid_.end(), [this](uint32_t a, uint32_t b) {
-    return readers_[a].gid < readers_[b].gid;
+  return is_copied;
+}
+
+void ReaderList::request_resyncs() const noexcept {
+  for_each_reader(cluster_, dsm_, [&](ReaderEntry & entry) {
+    const SegmentRef ref{entry.subscription.load(std::memory_order_acquire)};
+    auto * const header = registry_.clusters().find<SubscriptionHeader>(ref);
+    if (header != nullptr && header->magic.load() == subscription_magic) {
+      header->resync.store(1, std::memory_order_seq_cst);
+      notify_watchers(registry_, *header);
+    }
   });
 }
 

@@ -68,8 +68,8 @@ void TopicDsmWriter::free_old_generations() noexcept {
         ++i;
       }
     }
-  } catch (const Error &) {
-    // Another process holds the registry lock; the next publish tries again.
+  } catch (const std::exception &) {
+    // Another process holds the registry lock, or memory is short; the next publish tries again.
   }
 }
 

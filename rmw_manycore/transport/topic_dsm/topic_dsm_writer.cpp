@@ -79,7 +79,7 @@ TopicDsmWriter::TopicDsmWriter(Registry & registry, Cluster & cluster, EndpointE
 
 void TopicDsmWriter::enter() noexcept {
   OddPhase::begin(dsm_.phase);
-  readers_.refresh();
+  readers_.begin_phase();
 }
 
 void TopicDsmWriter::leave() noexcept { OddPhase::end(dsm_.phase); }
@@ -152,8 +152,9 @@ TopicDsmWriter::Reclaim TopicDsmWriter::reclaim(uint64_t number, bool force) {
     // Dekker with the claim: the reader stores `reading` before it loads `number`. Rebuild the
     // reader list after the store, so that a reader that has just joined is checked as well.
     record.number.store(no_record, std::memory_order_seq_cst);
-    readers_.refresh();
     pinned_in_slot_[number & (current_.count - 1)] = number;  // until seen unpinned
+    readers_.refresh();
+    readers_.require_all(endpoint_.topic);
   }
   return readers_.is_pinned(number) ? Reclaim::pinned : Reclaim::freed;
 }
@@ -190,6 +191,7 @@ void TopicDsmWriter::wait_for_progress(uint64_t number) {
     enter();
   }
   dsm_.writer_waits.store(0, std::memory_order_relaxed);
+  readers_.require_all(endpoint_.topic);  // the list is of another phase
 }
 
 void TopicDsmWriter::make_place(uint64_t number, uint64_t need_bytes) {
@@ -337,6 +339,9 @@ uint64_t TopicDsmWriter::commit(
   dsm_.last.store(next_number_, std::memory_order_seq_cst);
   dsm_.skipped_after.store(skipped, std::memory_order_release);
   readers_.refresh();
+  if (!readers_.is_complete()) {
+    readers_.request_resyncs();
+  }
   return next_number_++;
 }
 

@@ -39,7 +39,7 @@ public:
   /// Gives back the room of the last find_room().
   void abandon_room() noexcept;
   /// Publishes the first `size_bytes` of the room as a record and returns its number. The reader
-  /// list is up to date afterwards.
+  /// list is up to date afterwards; readers that it lacks for want of memory are set to resync.
   uint64_t commit(
     uint64_t size_bytes, int64_t source_timestamp_ns, uint64_t publication_sequence_number,
     const Correlation & correlation);
