@@ -29,6 +29,16 @@ def are_installed() -> bool:
     return all(importlib.util.find_spec(name) for name in ("launch_ros", "ros2launch", "ros2cli"))
 
 
+def are_available() -> bool:
+    """Return whether they are installed, or can be from checkouts."""
+    return are_installed() or bool(os.environ.get(CHECKOUTS_VARIABLE))
+
+
+def environment(directory: Path) -> dict[str, str]:
+    """Return the environment that finds them, installed into `directory` where necessary."""
+    return {} if are_installed() else install(directory)
+
+
 def install(directory: Path) -> dict[str, str]:
     """Install the checkouts into a directory; return the environment that finds them."""
     checkouts = Path(os.environ[CHECKOUTS_VARIABLE])

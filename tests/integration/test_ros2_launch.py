@@ -22,10 +22,7 @@ from rmw_manycore_py import _transport
 pytestmark = [
     pytest.mark.integration,
     pytest.mark.skipif(not IS_MANYCORE, reason="extensions are part of rmw_manycore"),
-    pytest.mark.skipif(
-        not (ros2_packages.are_installed() or os.environ.get(ros2_packages.CHECKOUTS_VARIABLE)),
-        reason=ros2_packages.REASON,
-    ),
+    pytest.mark.skipif(not ros2_packages.are_available(), reason=ros2_packages.REASON),
 ]
 
 LAUNCH_FILE = """\

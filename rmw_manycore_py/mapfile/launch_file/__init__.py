@@ -4,6 +4,7 @@
 from rmw_manycore_py.mapfile.launch_file.launched import (
     ExpandedFile,
     ForAllNodes,
+    GivenByName,
     LaunchedComponent,
     LaunchedNode,
     ParameterSource,
@@ -16,6 +17,7 @@ from rmw_manycore_py.mapfile.launch_file.reader import LaunchFile, read_launch_f
 __all__ = [
     "ExpandedFile",
     "ForAllNodes",
+    "GivenByName",
     "LaunchFile",
     "LaunchedComponent",
     "LaunchedNode",

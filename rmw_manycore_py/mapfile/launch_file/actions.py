@@ -3,26 +3,25 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 from typing_extensions import override
 
 from rmw_manycore_py.errors import ManycoreError, Problem
-from rmw_manycore_py.mapfile.launch_file.context import (
-    Later,
-    LaunchContext,
-    LaunchFileError,
-    MissingText,
-    NotInstalledError,
-)
+from rmw_manycore_py.mapfile.launch_file import unavailable
+from rmw_manycore_py.mapfile.launch_file.context import Later, LaunchContext
+from rmw_manycore_py.mapfile.launch_file.frame import calling_line
 from rmw_manycore_py.mapfile.launch_file.guard import failure, guarded
-from rmw_manycore_py.mapfile.launch_file.substitutions import is_true, perform
-
-_HERE = str(Path(__file__).parent)
+from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError, UnavailableError
+from rmw_manycore_py.mapfile.launch_file.substitution import (
+    Substitution,
+    condition_holds,
+    perform,
+    text_or_missing,
+)
+from rmw_manycore_py.mapfile.launch_file.typed_values import FLOAT, coerce
 
 
 class Condition:
@@ -41,7 +40,7 @@ class IfCondition(Condition):
 
     @override
     def evaluate(self, context: LaunchContext) -> bool:
-        return is_true(context, self.predicate_expression)
+        return condition_holds(context, self.predicate_expression)
 
 
 class UnlessCondition(IfCondition):
@@ -87,7 +86,7 @@ class Action:
         try:
             if self.condition is None or self.condition.evaluate(context):
                 visit_all(context, self.execute(context) or ())
-        except NotInstalledError as error:
+        except UnavailableError as error:
             self.cannot_run(context, error.at(context.file, self.line))
         except (ManycoreError, KeyboardInterrupt):
             raise
@@ -99,10 +98,10 @@ class Action:
         raise NotImplementedError
 
     def cannot_run(self, context: LaunchContext, problem: Problem) -> None:
-        """Record that a dependency is not installed."""
-        context.notice(
-            self.line, f"cannot run here: expected {problem.expected}, found {problem.found}"
-        )
+        """Record that something is missing here."""
+        with context.reading(problem.file):
+            text = f"cannot run here: expected {problem.expected}, found {problem.found}"
+            context.notice(problem.line, text)
 
 
 class LaunchDescription(Action):
@@ -151,10 +150,10 @@ class DeclareLaunchArgument(Action):
                 expected = f"a value for the launch argument '{self.name}', in launch_arguments"
                 raise LaunchFileError(expected, "none, and it has no default", self.name)
             values[self.name] = text_or_missing(context, self.default_value)
-        if self.choices is not None and values[self.name] not in self.choices:
-            raise LaunchFileError(
-                f"one of {', '.join(self.choices)}", f"'{values[self.name]}'", self.name
-            )
+        if self.choices is None:
+            return
+        if (chosen := unavailable.available(values[self.name])) not in self.choices:
+            raise LaunchFileError(f"one of {', '.join(self.choices)}", f"'{chosen}'", self.name)
 
 
 class SetLaunchConfiguration(Action):
@@ -200,16 +199,18 @@ class GroupAction(Action):
 
     @override
     def execute(self, context: LaunchContext) -> None:
-        if not is_true(context, self.scoped):
-            visit_all(context, self.actions)
-            return
         values = {
-            perform(context, name): perform(context, value)
+            perform(context, name): text_or_missing(context, value)
             for name, value in self.launch_configurations.items()
         }
+        if not self.scoped:  # launch takes any object as it is, also a substitution
+            context.launch_configurations.update(values)
+            visit_all(context, self.actions)
+            return
         with context.scoped():
-            if not is_true(context, self.forwarding):
+            if not self.forwarding:
                 context.launch_configurations.clear()
+                context.scope.environment.clear()
             context.launch_configurations.update(values)
             visit_all(context, self.actions)
 
@@ -263,10 +264,7 @@ class TimerAction(Action):
     @override
     def execute(self, context: LaunchContext) -> None:
         text = str(self.period) if isinstance(self.period, (int, float)) else self.period
-        try:
-            period_s = float(perform(context, text))
-        except ValueError:
-            raise LaunchFileError("a number of seconds", repr(perform(context, text))) from None
+        period_s = coerce(perform(context, text), FLOAT)
         start = replace(context.start, delay_s=context.start.delay_s + period_s)
         actions = self.actions
         context.later.append(Later(start, context.file, lambda: visit_all(context, actions)))
@@ -275,28 +273,25 @@ class TimerAction(Action):
         """Do nothing: no timer runs while a launch file is read."""
 
 
-def text_or_missing(context: LaunchContext, value: Any) -> str:
-    """Return the text of a launch argument; defer a missing package until the text is used."""
-    try:
-        return perform(context, value)
-    except NotInstalledError as error:
-        return MissingText.of(error)
-
-
 def visit_all(context: LaunchContext, entities: Iterable[Any]) -> None:
     """Execute actions in order."""
     for entity in [entities] if isinstance(entities, Action) else entities:
         if isinstance(entity, (list, tuple)):
             visit_all(context, entity)
             continue
+        if isinstance(entity, Substitution):
+            _note_missing(context, entity)
+            continue
         if not isinstance(entity, Action):
             raise LaunchFileError("a launch action", type(entity).__name__)
         entity.visit(context)
 
 
-def calling_line() -> int:
-    """Return the line of the Python launch file that creates an action."""
-    frame = sys._getframe(1)
-    while frame.f_back is not None and frame.f_code.co_filename.startswith(_HERE):
-        frame = frame.f_back
-    return frame.f_lineno
+def _note_missing(context: LaunchContext, entity: Substitution) -> None:
+    """Note an action that is left out, as it comes from something that is not installed."""
+    try:
+        perform(context, entity)
+    except UnavailableError as error:
+        context.notice(0, f"cannot run here: expected {error.expected}, found {error.found}")
+    else:
+        raise LaunchFileError("a launch action", type(entity).__name__)

@@ -32,9 +32,17 @@ class Finished:
 
 
 def run_child(
-    words: Sequence[str], environment: Mapping[str, str], timeout_s: float, given: bytes = b""
+    words: Sequence[str],
+    environment: Mapping[str, str],
+    timeout_s: float,
+    given: bytes = b"",
+    *,
+    captures_stderr: bool = False,
 ) -> Finished:
-    """Run a program with `given` on standard input; kill it and its children at a limit."""
+    """Run a program with `given` on standard input; kill it and its children at a limit.
+
+    :param captures_stderr: whether `stdout` of the result includes standard error.
+    """
     with tempfile.TemporaryFile() as stdin:
         stdin.write(given)
         stdin.seek(0)
@@ -43,7 +51,7 @@ def run_child(
             env=environment,
             stdin=stdin,
             stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            stderr=subprocess.STDOUT if captures_stderr else subprocess.PIPE,
             start_new_session=True,
             preexec_fn=dies_with_this_process(),
         )
@@ -59,8 +67,7 @@ def run_child(
 def _output(child: subprocess.Popen[bytes], end_s: float, timeout_s: float) -> tuple[bytes, bytes]:
     """Return the output of a program after its end."""
     assert child.stdout is not None
-    assert child.stderr is not None
-    read = {child.stdout: b"", child.stderr: b""}
+    read = {pipe: b"" for pipe in (child.stdout, child.stderr) if pipe is not None}
     with selectors.DefaultSelector() as selector:
         for pipe in read:
             selector.register(pipe, selectors.EVENT_READ)
@@ -69,7 +76,7 @@ def _output(child: subprocess.Popen[bytes], end_s: float, timeout_s: float) -> t
             if not ready:
                 raise ChildBoundError(f"no end after {timeout_s:g} s")
             for key, _ in ready:
-                pipe = child.stdout if key.fileobj is child.stdout else child.stderr
+                pipe = next(one for one in read if one is key.fileobj)
                 piece = os.read(pipe.fileno(), _READ_BYTES)
                 read[pipe] += piece
                 if not piece:
@@ -80,4 +87,4 @@ def _output(child: subprocess.Popen[bytes], end_s: float, timeout_s: float) -> t
         child.wait(max(0.0, end_s - time.monotonic()))
     except subprocess.TimeoutExpired:
         raise ChildBoundError(f"no end after {timeout_s:g} s") from None
-    return read[child.stdout], read[child.stderr]
+    return read[child.stdout], b"" if child.stderr is None else read[child.stderr]

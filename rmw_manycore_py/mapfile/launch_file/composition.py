@@ -8,12 +8,13 @@ from typing import Any
 
 from typing_extensions import override
 
-from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition, calling_line
+from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, join_namespace
+from rmw_manycore_py.mapfile.launch_file.frame import calling_line
 from rmw_manycore_py.mapfile.launch_file.launched import LaunchedComponent
-from rmw_manycore_py.mapfile.launch_file.parameters import evaluate_all
-from rmw_manycore_py.mapfile.launch_file.ros_actions import Node
-from rmw_manycore_py.mapfile.launch_file.substitutions import perform
+from rmw_manycore_py.mapfile.launch_file.parameters import evaluate_all, existing
+from rmw_manycore_py.mapfile.launch_file.ros_actions import Node, pairs
+from rmw_manycore_py.mapfile.launch_file.substitution import perform
 
 
 class ComposableNode:
@@ -33,7 +34,7 @@ class ComposableNode:
     ) -> None:
         self.package, self.plugin, self.name = package, plugin, name
         self.namespace, self.parameters = namespace, parameters
-        self.remappings, self.extra_arguments = list(remappings or ()), extra_arguments
+        self.remappings, self.extra_arguments = remappings, extra_arguments
         self.condition_of_node, self.line = condition, calling_line()
 
     def condition(self) -> Condition | None:
@@ -44,8 +45,8 @@ class ComposableNode:
         """Return the component with the settings at this point of the launch file."""
         name = None if self.name is None else perform(context, self.name) or None
         given = "" if self.namespace is None else perform(context, self.namespace)
-        namespace = join_namespace(context.scope.namespace, given)
-        remappings = tuple((perform(context, a), perform(context, b)) for a, b in self.remappings)
+        namespace = join_namespace(context.settings.namespace, given)
+        settings = context.settings
         return LaunchedComponent(
             file=context.file,
             line=self.line,
@@ -53,8 +54,11 @@ class ComposableNode:
             plugin=perform(context, self.plugin),
             name=name,
             namespace=namespace,
-            parameters=context.scope.parameters + evaluate_all(context, self.parameters),
-            remappings=context.scope.remappings + remappings,
+            parameters=(
+                *existing(settings.parameters),
+                *evaluate_all(context, self.parameters),
+            ),
+            remappings=(*settings.remappings, *pairs(context, self.remappings)),
             extra_arguments=evaluate_all(context, self.extra_arguments),
         )
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from rmw_manycore_py.errors import Problem
 from rmw_manycore_py.mapfile.launch_file.launched import (
+    GivenByName,
     LaunchedComponent,
     LaunchedNode,
     ParameterSource,
@@ -21,56 +21,60 @@ from rmw_manycore_py.mapfile.launch_file.launched import (
 )
 
 
-class LaunchFileError(Exception):
-    """Unsupported or invalid content of a launch file; the action adds file and line."""
-
-    def __init__(self, expected: str, found: str, key: str = "") -> None:
-        super().__init__(f"expected {expected}, found {found}")
-        self.expected, self.found, self.key = expected, found, key
-
-    def at(self, file: Path, line: int) -> Problem:
-        """Return the Problem at a file and line."""
-        return Problem(file, line, self.key, self.expected, self.found)
-
-
-class NotInstalledError(LaunchFileError):
-    """A package, program or file is missing; only affects what uses it."""
-
-
-class MissingText(str):
-    """Value of a launch argument that depends on something missing; `error` says what."""
-
-    error: NotInstalledError
-
-    @classmethod
-    def of(cls, error: NotInstalledError) -> MissingText:
-        """Return a value that raises `error` when used."""
-        text = cls(error.found)
-        text.error = error
-        return text
-
-
 @dataclass
 class Scope:
     """State restored at the end of a scoped group."""
 
-    configurations: dict[str, str] = field(default_factory=dict)
+    configurations: dict[str, Any] = field(default_factory=dict)
     environment: dict[str, str] = field(default_factory=dict)
-    namespace: str = ""
-    parameters: tuple[ParameterSource, ...] = ()
-    remappings: tuple[tuple[str, str], ...] = ()
     unset: frozenset[str] = frozenset()
 
     def copy(self) -> Scope:
-        """Return an independent copy."""
-        return Scope(
-            dict(self.configurations),
-            dict(self.environment),
-            self.namespace,
-            self.parameters,
-            self.remappings,
-            self.unset,
-        )
+        """Return a copy, in which lists stay those of the original, as under launch."""
+        return Scope(dict(self.configurations), dict(self.environment), self.unset)
+
+
+class NodeSettings:
+    """Settings of later nodes; launch_ros keeps them among the launch configurations.
+
+    They end where these are restored, reset or cleared. A list that exists already is extended in
+    place, so that what a group adds to it outlasts the group.
+    """
+
+    def __init__(self, configurations: dict[str, Any]) -> None:
+        self._configurations = configurations
+
+    @property
+    def namespace(self) -> str:
+        """Namespace pushed so far; empty if none was."""
+        return str(self._configurations.get("ros_namespace", ""))
+
+    @namespace.setter
+    def namespace(self, value: str) -> None:
+        self._configurations["ros_namespace"] = value
+
+    @property
+    def parameters(self) -> list[ParameterSource]:
+        """Parameters and parameter files."""
+        found = self._configurations.get("global_params", [])
+        return [
+            GivenByName({one[0]: one[1]}) if isinstance(one, tuple) else Path(os.path.abspath(one))
+            for one in found
+        ]
+
+    @property
+    def remappings(self) -> list[tuple[str, str]]:
+        """Remappings."""
+        found: list[tuple[str, str]] = self._configurations.get("ros_remaps", [])
+        return found
+
+    def add_parameters(self, source: tuple[str, Any] | str) -> None:
+        """Add a name with its value, or a file."""
+        self._configurations.setdefault("global_params", []).append(source)
+
+    def add_remapping(self, source: str, target: str) -> None:
+        """Add a remapping."""
+        self._configurations.setdefault("ros_remaps", []).append((source, target))
 
 
 @dataclass(frozen=True)
@@ -98,17 +102,21 @@ class LaunchContext:
         self.transitions: dict[int, list[int]] = {}
         self.locals = SimpleNamespace()
         self.environments: list[dict[str, str]] = []
-        self.configurations: list[dict[str, str]] = []
+        self.configurations: list[dict[str, Any]] = []
         self.notices: list[str] = []
-        self.missing: set[Path] = set()  # fake prefixes of packages that are not installed
         self.declared: set[str] = set()
         self.depth = 0
         self.files = 0
 
     @property
-    def launch_configurations(self) -> dict[str, str]:
-        """Launch arguments, and values set by `let`."""
+    def launch_configurations(self) -> dict[str, Any]:
+        """Launch arguments, values set by `let`, and settings of later nodes."""
         return self.scope.configurations
+
+    @property
+    def settings(self) -> NodeSettings:
+        """Settings of later nodes at this point of the launch file."""
+        return NodeSettings(self.scope.configurations)
 
     @property
     def environment(self) -> dict[str, str]:
@@ -129,10 +137,6 @@ class LaunchContext:
         place = f"{self.file}:{line}" if line else str(self.file)
         if (text := f"{place}: {text}") not in self.notices:
             self.notices.append(text)
-
-    def is_missing(self, path: Path) -> bool:
-        """Return whether a path is in a package that is not installed."""
-        return any(prefix in path.parents for prefix in self.missing)
 
     def result(self) -> list[LaunchedNode]:
         """Return the nodes, completed with settings found elsewhere in the launch file."""

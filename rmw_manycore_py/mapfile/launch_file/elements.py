@@ -11,6 +11,7 @@ from xml.parsers import expat
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_DEPTH
 from rmw_manycore_py.mapfile.format.document import Document, KeyPath, read_text, read_yaml
+from rmw_manycore_py.mapfile.launch_file.typed_values import Kind, coerce, coerce_list, is_of_kind
 
 # Keys that hold children in YAML; all others are attributes.
 _CHILD_LISTS = (
@@ -29,6 +30,7 @@ class Element:
     tag: str
     attributes: dict[str, Any] = field(default_factory=dict)
     children: list[Element] = field(default_factory=list)
+    is_yaml: bool = False
     used: set[str] = field(default_factory=set)
 
     def problem(self, expected: str, found: str) -> MapfileError:
@@ -46,6 +48,26 @@ class Element:
         if value is None:
             raise self.problem(f"the attribute '{names[0]}'", "no such attribute")
         return value
+
+    def typed(self, name: str, kind: Kind | None) -> Any:
+        """Return an attribute of a kind, or text that may hold substitutions; None if not set.
+
+        XML converts its texts, and splits them at the attribute `NAME-sep`; YAML checks types.
+        """
+        value = self.get(name)
+        if value is None:
+            return None
+        if self.is_yaml:
+            if not is_of_kind(value, kind, may_be_text=True):
+                wanted = "bool, number, text or list of one of them" if kind is None else kind
+                raise self.problem(f"'{name}' of type {wanted}", repr(value))
+            return value
+        separator = self.get(f"{name}-sep")
+        if separator is None:
+            return coerce(value, kind, may_be_text=True)
+        if separator == "":
+            raise self.problem("a separator of values", "an empty text")
+        return coerce_list(value.split(separator), kind)
 
     def take(self, *tags: str) -> list[Element]:
         """Remove and return the children with these tags."""
@@ -94,7 +116,28 @@ def read_xml(path: Path) -> Element:
     except expat.ExpatError as error:
         problem = Problem(path, error.lineno, "", "valid XML", expat.ErrorString(error.code))
         raise MapfileError(problem) from error
-    return _launch_tag(root.children[0])
+    launch = _launch_tag(root.children[0])
+    _refuse_ros_1(launch)
+    return launch
+
+
+# Tags and substitutions that only launch files of ROS 1 have.
+_TAGS_OF_ROS_1 = ("rosparam", "machine", "test")
+_SUBSTITUTIONS_OF_ROS_1 = ("$(find ", "$(arg ", "$(optenv ")
+
+
+def _refuse_ros_1(element: Element) -> None:
+    """Raise an error for a launch file of ROS 1, which has the same suffixes and root tag."""
+    texts = [value for value in element.attributes.values() if isinstance(value, str)]
+    is_node = element.tag == "node" and "type" in element.attributes
+    if is_node or element.tag in _TAGS_OF_ROS_1:
+        found = f"one of ROS 1: the tag <{element.tag}{' type=...' if is_node else ''}>"
+        raise element.problem("a launch file of ROS 2", found)
+    for start in _SUBSTITUTIONS_OF_ROS_1:
+        if any(start in text for text in texts):
+            raise element.problem("a launch file of ROS 2", f"one of ROS 1: '{start}...)'")
+    for child in element.children:
+        _refuse_ros_1(child)
 
 
 def read_yaml_elements(path: Path) -> Element:
@@ -113,7 +156,7 @@ def _launch_tag(element: Element) -> Element:
 
 
 def _element(document: Document, tag: str, value: Any, path: KeyPath) -> Element:
-    element = Element(document.file, document.line(path), tag)
+    element = Element(document.file, document.line(path), tag, is_yaml=True)
     if isinstance(value, list):
         _add_children(document, element, value, path)
     elif isinstance(value, dict):

@@ -15,7 +15,7 @@ from typing_extensions import override
 from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition, OpaqueFunction, visit_all
 from rmw_manycore_py.mapfile.launch_file.context import Later, LaunchContext
 from rmw_manycore_py.mapfile.launch_file.launched import Start
-from rmw_manycore_py.mapfile.launch_file.substitutions import perform
+from rmw_manycore_py.mapfile.launch_file.substitution import perform
 
 
 class Event:

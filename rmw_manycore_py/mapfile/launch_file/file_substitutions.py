@@ -10,17 +10,11 @@ from typing import Any
 from typing_extensions import override
 
 from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_BYTES
-from rmw_manycore_py.mapfile.launch_file.context import (
-    LaunchContext,
-    LaunchFileError,
-    NotInstalledError,
-)
-from rmw_manycore_py.mapfile.launch_file.substitutions import (
-    PathJoinSubstitution,
-    Substitution,
-    is_true,
-    perform,
-)
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
+from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError, UnavailableError
+from rmw_manycore_py.mapfile.launch_file.substitution import Substitution, perform
+from rmw_manycore_py.mapfile.launch_file.substitutions import PathJoinSubstitution, default_parts
+from rmw_manycore_py.mapfile.launch_file.typed_values import boolean
 
 
 class PathSubstitution(PathJoinSubstitution):
@@ -56,7 +50,7 @@ class FileContent(Substitution):
                 content = file.read(MAX_BYTES + 1)
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or "it is no text"
-            raise NotInstalledError("a readable file", f"'{path}': {reason}") from error
+            raise UnavailableError("a readable file", f"'{path}': {reason}") from error
         if len(content) > MAX_BYTES:
             raise LaunchFileError(f"a file of at most {MAX_BYTES} characters", f"'{path}'")
         return content
@@ -89,7 +83,7 @@ class BooleanSubstitution(Substitution):
 
     @override
     def perform(self, context: LaunchContext) -> str:
-        return str(is_true(context, self.value)).lower()
+        return str(boolean(context, self.value)).lower()
 
 
 class LocalSubstitution(Substitution):
@@ -113,9 +107,9 @@ class Parameter(Substitution):
     @override
     def perform(self, context: LaunchContext) -> str:
         name = perform(context, self.name)
-        for source in reversed(context.scope.parameters):
+        for source in context.settings.parameters:
             if isinstance(source, dict) and name in source:
                 return str(source[name])
         if self.default is None:
             raise LaunchFileError("a parameter that 'set_parameter' has set", f"'{name}'")
-        return perform(context, self.default)
+        return perform(context, default_parts(self.default))

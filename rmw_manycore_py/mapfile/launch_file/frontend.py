@@ -16,20 +16,21 @@ from rmw_manycore_py.mapfile.launch_file import process_actions as x
 from rmw_manycore_py.mapfile.launch_file import ros_actions as r
 from rmw_manycore_py.mapfile.launch_file import settings as t
 from rmw_manycore_py.mapfile.launch_file import text
-from rmw_manycore_py.mapfile.launch_file.context import LaunchFileError
 from rmw_manycore_py.mapfile.launch_file.elements import Element
 from rmw_manycore_py.mapfile.launch_file.include import (
     IncludeLaunchDescription,
     LaunchDescriptionSource,
 )
 from rmw_manycore_py.mapfile.launch_file.parameters import ParameterFile, ParameterValue
+from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError
+from rmw_manycore_py.mapfile.launch_file.substitution import TextSubstitution
+from rmw_manycore_py.mapfile.launch_file.typed_values import BOOL, KINDS, STR, Parts
 
 Make = Callable[[Element], a.Action]
 _OPTIONS = (
     *("output", "emulate_tty", "respawn", "respawn_delay", "respawn_max_retries", "cwd"),
     *("sigterm_timeout", "sigkill_timeout"),
 )
-_TYPES = {"bool": bool, "int": int, "float": float, "double": float, "str": str}
 
 
 def description(element: Element) -> a.LaunchDescription:
@@ -169,28 +170,42 @@ def _parameter(element: Element) -> Any:
         allow = _text(element.get("allow_substs"))
         element.check_all_used()
         return ParameterFile(_text(file), allow_substs=allow or False)
-    name = _plain(element.require("name"))
-    nested = [_parameter(child) for child in element.take("param")]
-    if nested:
-        element.check_all_used()
-        return {name: {key: value for part in nested for key, value in part.items()}}
-    value = _parameter_value(element)
+    return _named_parameter(element)
+
+
+def _named_parameter(element: Element) -> dict[Any, Any]:
+    name = tuple(text.parse(_plain(element.require("name"))))
+    inner = [_named_parameter(child) for child in element.take("param")]
+    nested = {key: value for part in inner for key, value in part.items()}
+    value = nested or _parameter_value(element)
     element.check_all_used()
     return {name: value}
 
 
-def _parameter_value(element: Element) -> Any:
-    value = element.require("value")
-    separator, kind = element.get("value-sep"), element.get("type")
-    if separator is not None:
-        if _plain(separator) == "":
-            raise element.problem("a separator of values", "an empty text")
-        return [ParameterValue(_text(p.strip())) for p in _plain(value).split(_plain(separator))]
-    if kind is not None and _plain(kind) not in _TYPES:
-        raise element.problem(f"one of the types {', '.join(_TYPES)}", f"'{kind}'")
-    if isinstance(value, str):
-        return ParameterValue(_text(value), value_type=_TYPES[kind] if kind else None)
-    return value
+def _parameter_value(element: Element) -> ParameterValue:
+    element.require("value")
+    named = element.typed("type", None)
+    if named is not None and (not isinstance(named, str) or named not in KINDS):
+        raise element.problem(f"one of the types {', '.join(KINDS)}", repr(named))
+    kind = KINDS[named] if named else None
+    value = element.typed("value", kind)
+    if isinstance(value, list):
+        value = [_if_substitutions(item) for item in value]
+        if len({str if isinstance(item, str) else type(item) for item in value} - {Parts}) > 1:
+            raise element.problem("a list of values of one type", repr(value))
+    else:
+        value = _if_substitutions(value)
+    return ParameterValue(value, value_type=kind)
+
+
+def _if_substitutions(value: Any) -> Any:
+    """Return the parts of a text that has substitutions, and any other value as it is."""
+    if not isinstance(value, str):
+        return value
+    parts = text.parse(value)
+    if len(parts) == 1 and isinstance(parts[0], TextSubstitution):
+        return parts[0].text
+    return Parts(tuple(parts))
 
 
 def _include(element: Element) -> a.Action:
@@ -200,17 +215,19 @@ def _include(element: Element) -> a.Action:
 
 
 def _group(element: Element) -> a.Action:
-    scoped = _text(element.get("scoped")) or True
-    forwarding = _text(element.get("forwarding")) or True
+    scoped, forwarding = (element.typed(name, BOOL) for name in ("scoped", "forwarding"))
     keep = dict(_pairs(element.take("keep"), "name", "value"))
     return a.GroupAction(
-        _actions(element), scoped=scoped, forwarding=forwarding, launch_configurations=keep
+        _actions(element),
+        scoped=True if scoped is None else scoped,
+        forwarding=True if forwarding is None else forwarding,
+        launch_configurations=keep,
     )
 
 
 def _executable(element: Element) -> a.Action:
     return x.ExecuteProcess(
-        shell=_text(element.get("shell")),
+        shell=element.typed("shell", BOOL),
         cmd=_words(element.require("cmd")),
         name=_text(element.get("name")),
         additional_env=dict(_pairs(element.take("env"), "name", "value")),
@@ -247,7 +264,9 @@ def _reset(element: Element) -> a.Action:
 
 
 def _set_parameter(element: Element) -> a.Action:
-    return r.SetParameter(_text(element.require("name")), _parameter_value(element))
+    element.require("value")
+    value = text.parse(element.typed("value", STR))
+    return r.SetParameter(_text(element.require("name")), value)
 
 
 def _push_namespace(element: Element) -> a.Action:

@@ -15,14 +15,10 @@ from rmw_manycore_py.mapfile.launch_file.actions import (
     Action,
     Condition,
     LaunchDescription,
-    text_or_missing,
 )
-from rmw_manycore_py.mapfile.launch_file.context import (
-    LaunchContext,
-    LaunchFileError,
-    NotInstalledError,
-)
-from rmw_manycore_py.mapfile.launch_file.substitutions import perform
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
+from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError
+from rmw_manycore_py.mapfile.launch_file.substitution import perform, text_or_missing
 
 Frontend = Callable[[Path], LaunchDescription]
 # Reader by file suffix; filled by `reader`.
@@ -62,9 +58,7 @@ class IncludeLaunchDescription(Action):
             return
         file = Path(perform(context, path))
         if not os.path.isfile(file):
-            missing = context.is_missing(file)
-            error = NotInstalledError if missing else LaunchFileError
-            raise error("an existing launch file", str(file))
+            raise LaunchFileError("an existing launch file", str(file))
         self._set_arguments(context)
         read_into(context, file)
 

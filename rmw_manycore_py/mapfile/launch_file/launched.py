@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,14 @@ class ExpandedFile:
 
 
 ParameterSource = dict[str, Any] | Path | ExpandedFile
+
+
+class GivenByName(ForAllNodes):
+    """Parameters of `set_parameter`: launch writes them as Python prints them.
+
+    An array is a tuple to launch_ros, which rcl reads as a text: `(1, 2)`. For a component they
+    stay as they are.
+    """
 
 
 @dataclass(frozen=True)
@@ -76,14 +84,14 @@ class LaunchedNode:
     line: int
     name: str | None
     namespace: str
-    package: str | None
-    executable: str | None
-    command: tuple[str, ...]
-    parameters: tuple[ParameterSource, ...]
-    remappings: tuple[tuple[str, str], ...]
-    arguments: tuple[str, ...]
-    ros_arguments: tuple[str, ...]
-    env: Mapping[str, str]
+    package: str | None = None
+    executable: str | None = None
+    command: tuple[str, ...] = ()
+    parameters: tuple[ParameterSource, ...] = ()
+    remappings: tuple[tuple[str, str], ...] = ()
+    arguments: tuple[str, ...] = ()
+    ros_arguments: tuple[str, ...] = ()
+    env: Mapping[str, str] = field(default_factory=dict)
     is_fully_named: bool = False  # name and namespace are given: launch addresses its values to it
     serial: int = 0
     number: int = 1  # among nodes of the same name

@@ -4,43 +4,37 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rmw_manycore_py.errors import MapfileError
-from rmw_manycore_py.mapfile.format.document import parse_yaml, read_text
-from rmw_manycore_py.mapfile.launch_file import text
-from rmw_manycore_py.mapfile.launch_file.context import (
-    LaunchContext,
-    LaunchFileError,
-    NotInstalledError,
-)
+from rmw_manycore_py.mapfile.format.document import read_text
+from rmw_manycore_py.mapfile.launch_file import text, unavailable
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
 from rmw_manycore_py.mapfile.launch_file.launched import ExpandedFile, ForAllNodes, ParameterSource
-from rmw_manycore_py.mapfile.launch_file.substitutions import Substitution, is_true, perform
-
-_SCALARS = (bool, int, float, str)
-_TYPES = {bool: "bool", int: "int", float: "float", str: "str"}
+from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError, UnavailableError
+from rmw_manycore_py.mapfile.launch_file.substitution import Substitution, perform
+from rmw_manycore_py.mapfile.launch_file.typed_values import (
+    SCALARS,
+    boolean,
+    from_yaml,
+    kind_of,
+    normalise,
+    perform_typed,
+)
 
 
 class ParameterValue:
     """A value with an explicit type, so that the text of a substitution is not guessed."""
 
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
-        self.value, self.value_type = value, value_type
+        self.value_type = value_type
+        self._kind = kind_of(value_type)
+        self.value = normalise(value, self._kind)
 
     def evaluate(self, context: LaunchContext) -> Any:
         """Return the value converted to its type."""
-        if self.value_type is None:
-            return _value(context, self.value)
-        if self.value_type is str:
-            return perform(context, self.value)
-        value = _value(context, self.value)
-        if self.value_type is float and type(value) is int:
-            return float(value)
-        if self.value_type in _TYPES and type(value) is not self.value_type:
-            raise LaunchFileError(f"a parameter of type {_TYPES[self.value_type]}", repr(value))
-        return value
+        return _usable(perform_typed(context, self.value, self._kind))
 
 
 class Parameter:
@@ -60,11 +54,11 @@ class ParameterFile:
         """Return the file, with its substitutions performed if it may have some."""
         path = Path(os.path.expanduser(perform(context, self.param_file)))
         if not os.path.isfile(path):
-            if context.is_missing(path) or is_true(context, self.allow_substs):
-                raise NotInstalledError("an existing parameter file", str(path))
+            if boolean(context, self.allow_substs):
+                raise UnavailableError("an existing parameter file", str(path))
             context.notice(0, f"no such parameter file, so it is left out: {path}")
             return {}
-        if not is_true(context, self.allow_substs):
+        if not boolean(context, self.allow_substs):
             return path
         return ExpandedFile(path, perform(context, text.parse(read_text(path))))
 
@@ -72,6 +66,27 @@ class ParameterFile:
 def evaluate_all(context: LaunchContext, sources: Any) -> tuple[ParameterSource, ...]:
     """Return the parameters of a node in the order in which launch gives them to rcl."""
     return tuple(_evaluate(context, source) for source in sources or ())
+
+
+def existing(sources: Iterable[ParameterSource]) -> Iterable[ParameterSource]:
+    """Return the settings of later nodes; unlike a node's own files, each of them has to exist."""
+    for source in sources:
+        if isinstance(source, Path) and not os.path.isfile(source):
+            raise UnavailableError("an existing parameter file", str(source))
+        yield source
+
+
+def value_of(context: LaunchContext, value: Any) -> Any:
+    """Return the value of a parameter as launch_ros evaluates it."""
+    if isinstance(value, ParameterValue):
+        return value.evaluate(context)
+    if isinstance(value, SCALARS):
+        return _usable(value)
+    if isinstance(value, Substitution):
+        return _of_text(perform(context, value))
+    if isinstance(value, Sequence) and not isinstance(value, bytes):
+        return _array(context, value)
+    raise LaunchFileError("a parameter value", repr(value))
 
 
 def _evaluate(context: LaunchContext, source: Any) -> ParameterSource:
@@ -92,38 +107,51 @@ def _flat(
         if isinstance(value, Mapping):
             yield from _flat(context, value, f"{name}.")
         else:
-            yield name, _value(context, value)
+            yield name, value_of(context, value)
 
 
-def _value(context: LaunchContext, value: Any) -> Any:
-    if isinstance(value, ParameterValue):
-        return value.evaluate(context)
-    if isinstance(value, (str, bool, int, float)):
-        return value
-    if isinstance(value, Substitution):
-        return _typed(perform(context, value))
-    if isinstance(value, (list, tuple)):
-        if any(isinstance(part, Substitution) for part in value):
-            return _typed(perform(context, value))
-        return _of_one_type([_value(context, part) for part in value])
-    raise LaunchFileError("a parameter value", repr(value))
+def _of_text(words: str) -> Any:
+    """Return what the text of a substitution says in YAML."""
+    value = from_yaml(words) if words else ""
+    if isinstance(value, list):
+        return _uniform(value)
+    if not isinstance(value, SCALARS):
+        expected = "a bool, number, text or list (else ParameterValue(..., value_type=str))"
+        raise LaunchFileError(expected, repr(words))
+    return value
 
 
-def _of_one_type(items: list[Any]) -> list[Any]:
-    """Convert an array of mixed types as ROS 2 launch does: to floats, else to strings."""
-    kinds = {type(item) for item in items}
-    if len(kinds) > 1:
-        convert = float if kinds == {int, float} else str
-        return [convert(item) for item in items]
+def _array(context: LaunchContext, items: Sequence[Any]) -> Any:
+    """Return an array; texts and substitutions alone are the parts of one text."""
+    types = {type(item) for item in items}
+    if all(isinstance(item, (str, Substitution)) for item in items) and any(
+        isinstance(item, Substitution) for item in items
+    ):
+        return _of_text(perform(context, items))
+    if types and types <= {int, float}:
+        return [item if types == {int} else float(item) for item in items]
+    return _uniform([_array_item(context, item) for item in items])
+
+
+def _array_item(context: LaunchContext, item: Any) -> Any:
+    if isinstance(item, SCALARS):
+        return _usable(item)
+    if isinstance(item, (Substitution, Sequence)):
+        return from_yaml(perform(context, item))
+    raise LaunchFileError("a parameter value", repr(item))
+
+
+def _uniform(items: list[Any]) -> list[Any]:
+    kind = type(items[0]) if items else None
+    if kind not in SCALARS or not all(isinstance(item, kind) for item in items):
+        expected = "a list that is not empty, of bools, numbers or texts of one type"
+        raise LaunchFileError(expected, repr(items))
     return items
 
 
-def _typed(words: str) -> Any:
-    """Parse a text as YAML, as ROS 2 launch does to type substitutions."""
-    try:
-        value = parse_yaml(words, Path()).data
-    except MapfileError:
-        return words
-    if isinstance(value, list) and not all(isinstance(part, _SCALARS) for part in value):
-        raise LaunchFileError("a list of bools, numbers or strings", repr(words))
-    return value if isinstance(value, (bool, int, float, str, list)) else words
+def _usable(value: Any) -> Any:
+    """Return a value; raise UnavailableError if it needs something that is missing here."""
+    for item in value if isinstance(value, list) else (value,):
+        if isinstance(item, str):
+            unavailable.available(item)
+    return value

@@ -5,17 +5,19 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from typing_extensions import override
 
 from rmw_manycore_py.errors import Problem
 from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchFileError
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
 from rmw_manycore_py.mapfile.launch_file.events import OnProcessExit
 from rmw_manycore_py.mapfile.launch_file.launched import LaunchedNode, Respawn
-from rmw_manycore_py.mapfile.launch_file.substitutions import is_true, perform
+from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError
+from rmw_manycore_py.mapfile.launch_file.substitution import perform
+from rmw_manycore_py.mapfile.launch_file.typed_values import boolean
 
 # Options without effect, since `manycore run` decides on output and signals.
 _WITHOUT_EFFECT = frozenset(
@@ -51,7 +53,7 @@ class ProcessAction(Action):
         **options: Any,
     ) -> None:
         super().__init__(condition=condition)
-        self.additional_env = dict(additional_env or {})
+        self.additional_env = additional_env
         self.options = options
         self.exec_name: Any = None
 
@@ -63,7 +65,7 @@ class ProcessAction(Action):
             raise LaunchFileError(
                 "an option of a node or executable", f"'{unknown[0]}'", unknown[0]
             )
-        own = {**dict(given.get("env") or {}), **self.additional_env}
+        own = {**dict(given.get("env") or {}), **dict(self.additional_env or {})}
         env = {perform(context, name): perform(context, value) for name, value in own.items()}
         if on_exit := given.get("on_exit"):
             OnProcessExit(target_action=self, on_exit=on_exit).register(context, self.line)
@@ -72,32 +74,25 @@ class ProcessAction(Action):
             prefix=self._prefix(context, given.get("prefix")),
             cwd=perform(context, given["cwd"]) if "cwd" in given else None,
             respawn=_respawn(context, given),
-            shell=is_true(context, given.get("shell", False)),
+            shell=bool(given.get("shell")),  # launch takes any object as it is
         )
 
     def _prefix(self, context: LaunchContext, given: Any) -> tuple[str, ...]:
         own = context.launch_configurations.get("launch-prefix", "")
         return tuple(shlex.split(perform(context, own if given is None else given)))
 
-    def label(self, context: LaunchContext) -> tuple[str | None, str]:
-        """Return name and namespace as far as known."""
-        return (None if self.exec_name is None else perform(context, self.exec_name)), "/"
+    def known(self, context: LaunchContext) -> LaunchedNode:
+        """Return the process as far as it is known although it cannot run here."""
+        raise NotImplementedError
 
     @override
     def cannot_run(self, context: LaunchContext, problem: Problem) -> None:
         super().cannot_run(context, problem)
-        name, namespace = self.label(context)
-        if name is not None:
-            node = LaunchedNode(
-                *(context.file, self.line, name, namespace, None, None, (), (), (), (), (), {}),
-                serial=context.serial(self),
-                problem=problem,
-            )
-            context.nodes.append(node)
+        context.nodes.append(replace(self.known(context), problem=problem))
 
 
 def _respawn(context: LaunchContext, given: Mapping[str, Any]) -> Respawn | None:
-    if not is_true(context, given.get("respawn", False) or False):
+    if not boolean(context, given.get("respawn", False)):
         return None
     delay, retries = given.get("respawn_delay", 0.0), given.get("respawn_max_retries", -1)
     return Respawn(number(context, delay), int(number(context, retries)))
@@ -120,12 +115,27 @@ class ExecuteProcess(ProcessAction):
         self.cmd, self.exec_name = list(cmd), name
 
     @override
+    def known(self, context: LaunchContext) -> LaunchedNode:
+        words = [known_text(context, word) for word in self.cmd]
+        name = None if self.exec_name is None else known_text(context, self.exec_name)
+        command = tuple(word for word in words[:1] if word)
+        return LaunchedNode(
+            context.file,
+            self.line,
+            name,
+            "/",
+            serial=context.serial(self),
+            command=command,
+            start=context.start,
+        )
+
+    @override
     def execute(self, context: LaunchContext) -> None:
         options = self.evaluate_options(context)
         command = tuple(perform(context, word) for word in self.cmd)
         if not command or not command[0]:
             raise LaunchFileError("a program and its arguments", "none")
-        label = self.label(context)[0]
+        label = None if self.exec_name is None else perform(context, self.exec_name)
         if options.shell:
             label = label or shlex.split(command[0])[0].rpartition("/")[2]
             command = ("/bin/sh", "-c", " ".join(command))
@@ -135,13 +145,7 @@ class ExecuteProcess(ProcessAction):
                 line=self.line,
                 name=label,
                 namespace="/",
-                package=None,
-                executable=None,
                 command=command,
-                parameters=(),
-                remappings=(),
-                arguments=(),
-                ros_arguments=(),
                 env=options.env,
                 serial=context.serial(self),
                 prefix=options.prefix,
@@ -150,3 +154,11 @@ class ExecuteProcess(ProcessAction):
                 respawn=options.respawn,
             )
         )
+
+
+def known_text(context: LaunchContext, value: Any) -> str | None:
+    """Return a text, or None if it is missing or wrong: for what cannot run anyway."""
+    try:
+        return perform(context, value)
+    except LaunchFileError:
+        return None

@@ -8,12 +8,18 @@ from typing import Any
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.launch_file import actions as a
+from rmw_manycore_py.mapfile.launch_file.frame import MODULE_NAME
 from rmw_manycore_py.mapfile.launch_file.guard import guarded
+from rmw_manycore_py.mapfile.launch_file.missing_modules import open_or_missing
 
 
 def read_python(path: Path) -> a.LaunchDescription:
     """Run a launch file and return its LaunchDescription."""
-    namespace: dict[str, Any] = {"__file__": str(path), "__name__": "launch_file"}
+    namespace: dict[str, Any] = {
+        "__file__": str(path),
+        "__name__": MODULE_NAME,
+        "open": open_or_missing,
+    }
     code = guarded(path, lambda: compile(path.read_bytes(), str(path), "exec"))
     guarded(path, exec, code, namespace)
     generate = namespace.get("generate_launch_description")

@@ -3,19 +3,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from rmw_manycore_py.errors import MapfileError
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchFileError
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
 from rmw_manycore_py.mapfile.launch_file.elements import read_xml, read_yaml_elements
 from rmw_manycore_py.mapfile.launch_file.frontend import description
 from rmw_manycore_py.mapfile.launch_file.include import FRONTENDS, read_into
 from rmw_manycore_py.mapfile.launch_file.launched import LaunchedNode
 from rmw_manycore_py.mapfile.launch_file.python_file import read_python
 from rmw_manycore_py.mapfile.launch_file.reading_process import read_in_child
+from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError
 from rmw_manycore_py.mapfile.launch_file.stand_ins import install_stand_ins
+
+# What a sourced ROS 2 sets, and code of launch files asks for; the wheels need no sourcing.
+_ROS_ENVIRONMENT = {"ROS_DISTRO": "jazzy", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
 
 FRONTENDS.update(
     {
@@ -46,12 +52,25 @@ def read_launch_file(file: Path, arguments: Mapping[str, str] | None = None) -> 
 def _read(file: Path, arguments: Mapping[str, str]) -> LaunchFile:
     context = LaunchContext(file, arguments)
     try:
-        install_stand_ins(context)
-        read_into(context, file)
-        with context.reading(file):
-            context.finish()
+        with _ros_environment():
+            install_stand_ins(context)
+            read_into(context, file)
+            with context.reading(file):
+                context.finish()
     except LaunchFileError as refused:
         raise MapfileError(refused.at(file, 0)) from refused
     declared = frozenset(context.declared)
     nodes = tuple(context.result())
     return LaunchFile(file, nodes, declared, tuple(context.notices))
+
+
+@contextmanager
+def _ros_environment() -> Iterator[None]:
+    """Set the variables of a sourced ROS 2 while the launch file is read."""
+    added = {name: value for name, value in _ROS_ENVIRONMENT.items() if name not in os.environ}
+    os.environ.update(added)
+    try:
+        yield
+    finally:
+        for name in added:
+            os.environ.pop(name, None)

@@ -77,6 +77,7 @@ def _status(pid: int) -> int:
 def _run(file: Path, read: Callable[[], Any], answers: BinaryIO) -> NoReturn:
     status = 1
     try:
+        _read_nothing_from_stdin()
         data = _read(file, read)
         sys.stdout.flush()
         answers.write(data)
@@ -86,6 +87,13 @@ def _run(file: Path, read: Callable[[], Any], answers: BinaryIO) -> NoReturn:
         traceback.print_exc()
     finally:
         os._exit(status)  # nothing of the parent is cleaned up twice
+
+
+def _read_nothing_from_stdin() -> None:
+    """Give code that asks for input an empty one, instead of the terminal of the user."""
+    with open(os.devnull) as nothing:
+        os.dup2(nothing.fileno(), 0)
+    sys.stdin = open(0, closefd=False)  # noqa: SIM115  # until the process ends
 
 
 def _read(file: Path, read: Callable[[], Any]) -> bytes:

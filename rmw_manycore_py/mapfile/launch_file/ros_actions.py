@@ -9,16 +9,17 @@ from typing import Any
 from typing_extensions import override
 
 from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition
-from rmw_manycore_py.mapfile.launch_file.context import (
-    LaunchContext,
-    LaunchFileError,
-    join_namespace,
-)
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, join_namespace
 from rmw_manycore_py.mapfile.launch_file.events import change_state
-from rmw_manycore_py.mapfile.launch_file.launched import ForAllNodes, LaunchedNode
-from rmw_manycore_py.mapfile.launch_file.parameters import ParameterFile, evaluate_all
-from rmw_manycore_py.mapfile.launch_file.process_actions import ProcessAction
-from rmw_manycore_py.mapfile.launch_file.substitutions import is_true, perform
+from rmw_manycore_py.mapfile.launch_file.launched import LaunchedNode
+from rmw_manycore_py.mapfile.launch_file.parameters import (
+    ParameterValue,
+    evaluate_all,
+    existing,
+    value_of,
+)
+from rmw_manycore_py.mapfile.launch_file.process_actions import ProcessAction, known_text
+from rmw_manycore_py.mapfile.launch_file.substitution import perform
 
 
 class Node(ProcessAction):
@@ -40,7 +41,7 @@ class Node(ProcessAction):
         super().__init__(**options)
         self.executable, self.package = executable, package
         self.name, self.namespace = name, namespace
-        self.parameters, self.remappings = parameters, list(remappings or ())
+        self.parameters, self.remappings = parameters, remappings
         self.arguments, self.ros_arguments = arguments, ros_arguments
         self.known_name = ""
 
@@ -51,17 +52,26 @@ class Node(ProcessAction):
     def _names(self, context: LaunchContext) -> tuple[str | None, str, str]:
         name = None if self.name is None else perform(context, self.name) or None
         given = "" if self.namespace is None else perform(context, self.namespace)
-        namespace = join_namespace(context.scope.namespace, given)
+        namespace = join_namespace(context.settings.namespace, given)
         label = name or perform(context, self.executable)
         return name, namespace, f"{namespace.rstrip('/')}/{label}"
 
     @override
-    def label(self, context: LaunchContext) -> tuple[str | None, str]:
-        try:
-            _, namespace, full_name = self._names(context)
-        except LaunchFileError:
-            return None, "/"
-        return full_name.rpartition("/")[2], namespace
+    def known(self, context: LaunchContext) -> LaunchedNode:
+        name, namespace, package, executable = (
+            None if value is None else known_text(context, value)
+            for value in (self.name, self.namespace, self.package, self.executable)
+        )
+        return LaunchedNode(
+            file=context.file,
+            line=self.line,
+            name=name or None,
+            namespace=join_namespace(context.settings.namespace, namespace or ""),
+            package=package,
+            executable=executable,
+            serial=context.serial(self),
+            start=context.start,
+        )
 
     @override
     def execute(self, context: LaunchContext) -> None:
@@ -69,7 +79,7 @@ class Node(ProcessAction):
         self.known_name = full_name
         options = self.evaluate_options(context)
         executable = perform(context, self.executable)
-        remappings = tuple((perform(context, a), perform(context, b)) for a, b in self.remappings)
+        settings = context.settings
         package = None if self.package is None else perform(context, self.package)
         context.nodes.append(
             LaunchedNode(
@@ -80,8 +90,11 @@ class Node(ProcessAction):
                 package=package,
                 executable=executable,
                 command=() if package else (executable,),
-                parameters=context.scope.parameters + evaluate_all(context, self.parameters),
-                remappings=context.scope.remappings + remappings,
+                parameters=(
+                    *existing(settings.parameters),
+                    *evaluate_all(context, self.parameters),
+                ),
+                remappings=(*settings.remappings, *pairs(context, self.remappings)),
                 arguments=tuple(perform(context, word) for word in self.arguments or ()),
                 ros_arguments=tuple(perform(context, word) for word in self.ros_arguments or ()),
                 env=options.env,
@@ -95,7 +108,12 @@ class Node(ProcessAction):
         )
 
     def _has_namespace(self, context: LaunchContext) -> bool:
-        return self.namespace is not None or bool(context.scope.namespace)
+        return self.namespace is not None or bool(context.settings.namespace)
+
+
+def pairs(context: LaunchContext, remappings: Any) -> list[tuple[str, str]]:
+    """Return remappings as texts."""
+    return [(perform(context, one), perform(context, other)) for one, other in remappings or ()]
 
 
 class LifecycleNode(Node):
@@ -108,7 +126,7 @@ class LifecycleNode(Node):
     @override
     def execute(self, context: LaunchContext) -> None:
         super().execute(context)
-        if is_true(context, self.autostart):
+        if self.autostart:  # launch takes any object as it is
             change_state(context, [context.serial(self)], 1)
             change_state(context, [context.serial(self)], 3)
 
@@ -123,7 +141,7 @@ class PushROSNamespace(Action):
     @override
     def execute(self, context: LaunchContext) -> None:
         pushed = perform(context, self.namespace)
-        context.scope.namespace = join_namespace(context.scope.namespace, pushed)
+        context.settings.namespace = join_namespace(context.settings.namespace, pushed)
 
 
 class SetRemap(Action):
@@ -135,7 +153,7 @@ class SetRemap(Action):
 
     @override
     def execute(self, context: LaunchContext) -> None:
-        context.scope.remappings += ((perform(context, self.src), perform(context, self.dst)),)
+        context.settings.add_remapping(perform(context, self.src), perform(context, self.dst))
 
 
 class SetParameter(Action):
@@ -147,10 +165,10 @@ class SetParameter(Action):
 
     @override
     def execute(self, context: LaunchContext) -> None:
-        name = perform(context, self.name)
-        (values,) = evaluate_all(context, [{name: self.value}])
-        assert isinstance(values, dict)
-        context.scope.parameters += (ForAllNodes(values),)
+        value = value_of(context, self.value)
+        if isinstance(value, list) and not isinstance(self.value, ParameterValue):
+            value = tuple(value)
+        context.settings.add_parameters((perform(context, self.name), value))
 
 
 class SetParametersFromFile(Action):
@@ -162,14 +180,21 @@ class SetParametersFromFile(Action):
 
     @override
     def execute(self, context: LaunchContext) -> None:
-        context.scope.parameters += evaluate_all(context, [ParameterFile(self.filename)])
+        context.settings.add_parameters(perform(context, self.filename))
 
 
-class SetUseSimTime(SetParameter):
-    """`set_use_sim_time`."""
+class SetUseSimTime(Action):
+    """`set_use_sim_time`: for timers of launch itself."""
 
     def __init__(self, value: Any, *, condition: Condition | None = None) -> None:
-        super().__init__("use_sim_time", value, condition=condition)
+        super().__init__(condition=condition)
+        self.value = value
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        context.notice(
+            self.line, "set_use_sim_time has no effect here; set_parameter sets it for nodes"
+        )
 
 
 class SetROSLogDir(Action):

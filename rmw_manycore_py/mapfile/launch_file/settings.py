@@ -10,8 +10,10 @@ from typing import Any
 from typing_extensions import override
 
 from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchFileError
-from rmw_manycore_py.mapfile.launch_file.substitutions import is_true, perform
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
+from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError
+from rmw_manycore_py.mapfile.launch_file.substitution import perform, text_or_missing
+from rmw_manycore_py.mapfile.launch_file.typed_values import boolean
 
 
 class AppendEnvironmentVariable(Action):
@@ -35,7 +37,7 @@ class AppendEnvironmentVariable(Action):
         name, value = perform(context, self.name), perform(context, self.value)
         if name in context.environment:
             parts = [context.environment[name], value]
-            ordered = reversed(parts) if is_true(context, self.prepend) else parts
+            ordered = reversed(parts) if boolean(context, self.prepend) else parts
             value = perform(context, self.separator).join(ordered)
         context.scope.environment[name] = value
 
@@ -123,7 +125,7 @@ class ResetLaunchConfigurations(Action):
     @override
     def execute(self, context: LaunchContext) -> None:
         kept = {
-            perform(context, name): perform(context, value)
+            perform(context, name): text_or_missing(context, value)
             for name, value in self.launch_configurations.items()
         }
         context.scope.configurations = kept

@@ -7,11 +7,17 @@ machine.
 
 from __future__ import annotations
 
+import importlib
 import sys
-from collections.abc import Mapping
+from collections.abc import Sequence
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import ModuleType
 from typing import Any
+
+from ament_index_python import packages
+from typing_extensions import override
 
 from rmw_manycore_py.mapfile.launch_file import actions as a
 from rmw_manycore_py.mapfile.launch_file import composition as c
@@ -22,9 +28,14 @@ from rmw_manycore_py.mapfile.launch_file import parameters as p
 from rmw_manycore_py.mapfile.launch_file import process_actions as x
 from rmw_manycore_py.mapfile.launch_file import ros_actions as r
 from rmw_manycore_py.mapfile.launch_file import settings as t
+from rmw_manycore_py.mapfile.launch_file import substitution as b
 from rmw_manycore_py.mapfile.launch_file import substitutions as s
 from rmw_manycore_py.mapfile.launch_file import utilities as u
+from rmw_manycore_py.mapfile.launch_file.command import Command
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
+from rmw_manycore_py.mapfile.launch_file.frame import calling_frame, is_in_try
+from rmw_manycore_py.mapfile.launch_file.missing_modules import MissingFinder
+from rmw_manycore_py.mapfile.launch_file.placeholders import Unsupported
 from rmw_manycore_py.ros import ament
 
 _PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml")
@@ -47,8 +58,8 @@ _ACTIONS = _named(
     *(e.UnregisterEventHandler, e.EmitEvent),
 ) | {"Shutdown": e.EndLaunch, "ExecuteLocal": x.ExecuteProcess}
 _SUBSTITUTIONS = _named(
-    *(s.TextSubstitution, s.LaunchConfiguration, s.EnvironmentVariable, s.FindExecutable),
-    *(s.PathJoinSubstitution, s.ThisLaunchFile, s.ThisLaunchFileDir, s.PythonExpression, s.Command),
+    *(b.TextSubstitution, s.LaunchConfiguration, s.EnvironmentVariable, s.FindExecutable),
+    *(s.PathJoinSubstitution, s.ThisLaunchFile, s.ThisLaunchFileDir, s.PythonExpression, Command),
     *(s.NotSubstitution, s.AndSubstitution, s.OrSubstitution, s.EqualsSubstitution),
     *(s.NotEqualsSubstitution, s.IfElseSubstitution, s.AllSubstitution, s.AnySubstitution),
     *(f.PathSubstitution, f.StringJoinSubstitution, f.FileContent, f.LaunchLogDir, f.AnonName),
@@ -73,7 +84,7 @@ _UTILITIES = _named(
 _TYPED = _named(u.normalize_typed_substitution, u.perform_typed_substitution)
 _TYPES = {
     "SomeSubstitutionsType": Any,
-    "SomeSubstitutionsType_types_tuple": (str, s.Substitution, list, tuple),
+    "SomeSubstitutionsType_types_tuple": (str, b.Substitution, list, tuple),
     "SomeEntitiesType": Any,
     "SomeEntitiesType_types_tuple": (a.Action, list, tuple),
 }
@@ -94,7 +105,7 @@ _DESCRIPTIONS = _named(p.Parameter, p.ParameterFile, p.ParameterValue)
 _LIFECYCLE = _named(e.ChangeState, e.StateTransition, e.matches_node_name)
 _CONTENTS: dict[str, dict[str, Any]] = {
     "launch": {
-        **_named(a.LaunchDescription, a.Action, a.Condition, s.Substitution, LaunchContext),
+        **_named(a.LaunchDescription, a.Action, a.Condition, b.Substitution, LaunchContext),
         **_named(e.Event, e.EventHandler, u.LaunchIntrospector, u.LaunchService),
         **_named(u.InvalidLaunchFileError),
         **_TYPES,
@@ -112,8 +123,7 @@ _CONTENTS: dict[str, dict[str, Any]] = {
     | {"TimerEvent": e.Event, "ExecutionComplete": e.Event},
     "launch.events.matchers": _named(e.matches_action),
     "launch.events.process": _PROCESS_EVENTS,
-    "launch.frontend": {"expose_action": u.expose, "expose_substitution": u.expose}
-    | {"Entity": Any, "Parser": Any},
+    "launch.frontend": {"expose_action": u.expose, "expose_substitution": u.expose},
     "launch.launch_context": _named(LaunchContext),
     "launch.launch_description": _named(a.LaunchDescription),
     "launch.launch_description_entity": {"LaunchDescriptionEntity": a.Action},
@@ -124,7 +134,7 @@ _CONTENTS: dict[str, dict[str, Any]] = {
     "launch.logging": _named(u.get_logger),
     "launch.some_entities_type": _TYPES,
     "launch.some_substitutions_type": _TYPES,
-    "launch.substitution": _named(s.Substitution),
+    "launch.substitution": _named(b.Substitution),
     "launch.substitutions": _SUBSTITUTIONS,
     "launch.utilities": _UTILITIES,
     "launch.utilities.type_utils": _TYPED,
@@ -143,74 +153,97 @@ _CONTENTS: dict[str, dict[str, Any]] = {
     "launch_yaml": {},
     "launch_yaml.launch_description_sources": _SOURCES,
 }
-# Modules of launch with one class each, named after the class in lower case.
-_ONE_EACH = {
-    "launch.actions": _ACTIONS,
-    "launch.event_handlers": _HANDLERS,
-    "launch.substitutions": _SUBSTITUTIONS,
-    "launch_ros.actions": _ROS_ACTIONS,
-    "launch_ros.substitutions": _ROS_SUBSTITUTIONS,
-}
+
+
+class StandInFinder(Loader, MetaPathFinder):
+    """Makes every module of launch when it is imported.
+
+    A name in it is sought in the module, in the packages above, and then in all of launch: launch
+    has a module per class, and moves classes between them. What is found nowhere fails when it is
+    used.
+    """
+
+    @override
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        if fullname.partition(".")[0] not in _PACKAGES:
+            return None
+        if not _is_known_module(fullname) and is_in_try(calling_frame()):
+            return None
+        return ModuleSpec(fullname, self, is_package=True)
+
+    @override
+    def exec_module(self, module: ModuleType) -> None:
+        vars(module).update(_CONTENTS.get(module.__name__, {}))
+
+        def find_in_module(name: str) -> Any:
+            if name.startswith("__"):
+                raise AttributeError(name)
+            return find_name(f"{module.__name__}.{name}")
+
+        vars(module)["__getattr__"] = find_in_module
+
+
+def _is_known_module(dotted: str) -> bool:
+    """Return whether launch has a module: one listed here, or that of a class of its package."""
+    package, _, last = dotted.rpartition(".")
+    names = {name.lower() for name in _CONTENTS.get(package, {})}
+    return dotted in _CONTENTS or last.removesuffix("_impl").replace("_", "") in names
+
+
+def find_name(dotted: str) -> Any:
+    """Return a module or name of launch; unless it is imported on trial, it may be unsupported."""
+    if dotted in _CONTENTS:
+        return importlib.import_module(dotted)
+    place, _, name = dotted.rpartition(".")
+    while place:
+        if name in _CONTENTS.get(place, {}):
+            return _CONTENTS[place][name]
+        place = place.rpartition(".")[0]
+    packages = (dotted.partition(".")[0], "launch")  # the others import names of launch
+    elsewhere = {
+        id(content[name]): content[name]
+        for module, content in _CONTENTS.items()
+        if module.partition(".")[0] in packages and name in content
+    }
+    if len(elsewhere) == 1:
+        return next(iter(elsewhere.values()))
+    if is_in_try(calling_frame()):
+        raise AttributeError(name)
+    return Unsupported(dotted, find_name)
 
 
 def install_stand_ins(context: LaunchContext) -> None:
     """Install the stand-ins for `import launch` in this process, which reads the launch file."""
     for name in [name for name in sys.modules if name.split(".")[0] in _PACKAGES]:
         del sys.modules[name]
-    for name, content in _CONTENTS.items():
-        sys.modules[name] = _module(name, content)
-    for package, classes in _ONE_EACH.items():
-        for name, thing in classes.items():
-            _module_of_one(package, name, thing)
+    sys.meta_path.insert(0, StandInFinder())
+    sys.meta_path.append(MissingFinder())
     _make_index_lenient(context)
 
 
-def _module(name: str, content: Mapping[str, Any]) -> ModuleType:
-    module = ModuleType(name)
-    module.__path__ = []
-    vars(module).update(content)
-    sys.modules[name] = module
-    parent, _, last = name.rpartition(".")
-    if parent and last not in vars(sys.modules[parent]):
-        setattr(sys.modules[parent], last, module)
-    return module
-
-
-def _module_of_one(package: str, name: str, thing: Any) -> None:
-    words = "".join(f"_{char.lower()}" if char.isupper() else char for char in name)
-    _module(f"{package}.{words.lstrip('_')}", {name: thing})
-
-
 def _make_index_lenient(context: LaunchContext) -> None:
-    """Give packages that are not installed a share directory that does not exist.
+    """Give packages that are not installed a directory that stands for theirs.
 
-    This lets a launch file that only looks up such a package be read; what uses its files cannot
-    run.
+    Code that looks up such a package on trial is told the truth.
     """
-    try:
-        import ament_index_python
-        from ament_index_python import packages
-    except ImportError:
-        return
-    holders: tuple[Any, ...] = (ament_index_python, packages)
-    for holder in holders:
-        holder.get_package_prefix = lambda package: str(_prefix(context, package))
-        holder.get_package_share_directory = lambda package, **_options: str(
-            _prefix(context, package) / "share" / package
-        )
-        holder.get_package_share_path = lambda package, **_options: (
-            _prefix(context, package) / "share" / package
-        )
 
+    def prefix_of(package: str) -> Path:
+        found = ament.package_prefix(package)
+        if found is None and is_in_try(calling_frame()):
+            raise packages.PackageNotFoundError(package)
+        if found is None:
+            context.notice(
+                0, f"the package '{package}' is not installed; what needs it cannot run here"
+            )
+        return found or s.missing_prefix(package)
 
-def _prefix(context: LaunchContext, package: str) -> Path:
-    found = ament.package_prefix(package)
-    if found is not None:
-        return found
-    nowhere = Path(f"/{package}-is-not-installed")
-    if nowhere not in context.missing:
-        context.missing.add(nowhere)
-        context.notice(
-            0, f"the package '{package}' is not installed; what needs it cannot run here"
-        )
-    return nowhere
+    def share_of(package: str, **_options: Any) -> Path:
+        return prefix_of(package) / "share" / package
+
+    for holder in (sys.modules["ament_index_python"], packages):
+        lenient: Any = holder
+        lenient.get_package_prefix = lambda package: str(prefix_of(package))
+        lenient.get_package_share_directory = lambda package, **_options: str(share_of(package))
+        lenient.get_package_share_path = share_of

@@ -3,78 +3,25 @@
 
 from __future__ import annotations
 
+import math
 import os
-import shlex
 import shutil
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from typing_extensions import override
 
 from rmw_manycore_py.errors import shorten
-from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_BYTES
-from rmw_manycore_py.mapfile.launch_file import expression
-from rmw_manycore_py.mapfile.launch_file.child import ChildBoundError, run_child
-from rmw_manycore_py.mapfile.launch_file.context import (
-    LaunchContext,
-    LaunchFileError,
-    MissingText,
-    NotInstalledError,
-)
+from rmw_manycore_py.mapfile.launch_file import expression, unavailable
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
+from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError, UnavailableError
+from rmw_manycore_py.mapfile.launch_file.substitution import Substitution, perform
+from rmw_manycore_py.mapfile.launch_file.typed_values import is_substitution, truth
 from rmw_manycore_py.ros import ament
 
 # Length at which expressions and commands are truncated in errors.
 _MAX_QUOTED = 100
-COMMAND_TIMEOUT_S = 60
-
-
-class Substitution:
-    """A text that is evaluated while the launch file is read."""
-
-    def __init__(self) -> None:
-        """Accept the call from subclasses in launch files."""
-
-    def describe(self) -> str:
-        """Return a description, for launch files that print it."""
-        return type(self).__name__
-
-    def perform(self, context: LaunchContext) -> str:
-        """Evaluate the substitution."""
-        raise NotImplementedError
-
-
-def perform(context: LaunchContext, value: Any) -> str:
-    """Evaluate a string, a substitution, or a sequence of these."""
-    if isinstance(value, (str, os.PathLike)):
-        return os.fspath(value)
-    if isinstance(value, Substitution):
-        return value.perform(context)
-    if isinstance(value, Iterable):
-        text = "".join(perform(context, part) for part in value)
-        if len(text) > MAX_BYTES:
-            raise LaunchFileError(f"a text of at most {MAX_BYTES} characters", str(len(text)))
-        return text
-    raise LaunchFileError("a string or a substitution", repr(value))
-
-
-def is_true(context: LaunchContext, value: Any) -> bool:
-    """Evaluate a condition: true, false, 1 or 0."""
-    text = str(value) if isinstance(value, bool) else perform(context, value)
-    if text.strip().lower() not in ("true", "false", "1", "0"):
-        raise LaunchFileError("a condition that is true, false, 1 or 0", repr(text))
-    return text.strip().lower() in ("true", "1")
-
-
-class TextSubstitution(Substitution):
-    """Plain text."""
-
-    def __init__(self, *, text: str) -> None:
-        self.text = text
-
-    @override
-    def perform(self, context: LaunchContext) -> str:
-        return self.text
 
 
 class LaunchConfiguration(Substitution):
@@ -87,16 +34,18 @@ class LaunchConfiguration(Substitution):
     def perform(self, context: LaunchContext) -> str:
         name = perform(context, self.variable_name)
         if name in context.launch_configurations:
-            value = context.launch_configurations[name]
-            if isinstance(value, MissingText):
-                raise value.error
-            return value
+            return str(context.launch_configurations[name])
         if self.default is None:
             known = ", ".join(sorted(context.launch_configurations)) or "none"
             raise LaunchFileError(f"a declared launch argument ({known})", f"'{name}'")
-        if isinstance(self.default, (bool, int, float)):
-            return str(self.default)
-        return perform(context, self.default)
+        return perform(context, default_parts(self.default))
+
+
+def default_parts(default: Any) -> list[Any]:
+    """Return the parts of a default value; what is no text becomes one."""
+    is_one = isinstance(default, (str, Substitution)) or not isinstance(default, Iterable)
+    items = [default] if is_one else list(default)
+    return [item if isinstance(item, (str, Substitution)) else str(item) for item in items]
 
 
 class EnvironmentVariable(Substitution):
@@ -123,30 +72,25 @@ class FindPackagePrefix(Substitution):
 
     @override
     def perform(self, context: LaunchContext) -> str:
-        return str(self.found(context, ament.package_prefix))
+        return self.find(perform(context, self.package))
 
-    def found(self, context: LaunchContext, find: Callable[[str], Path | None]) -> Path:
-        """Return the result of `find` for the package; raise NotInstalledError if it is None."""
-        name = perform(context, self.package)
-        path = find(name)
-        if path is None:
-            raise NotInstalledError("an installed package", f"'{name}'")
-        return path
+    def find(self, package_name: str) -> str:
+        """Return the directory of a package."""
+        return str(ament.package_prefix(package_name) or missing_prefix(package_name))
 
 
 class FindPackageShare(FindPackagePrefix):
     """`$(find-pkg-share package)`."""
 
     @override
-    def perform(self, context: LaunchContext) -> str:
-        return str(self.found(context, ament.package_share))
-
     def find(self, package_name: str) -> str:
-        """Return the share directory of a package."""
-        path = ament.package_share(package_name)
-        if path is None:
-            raise NotInstalledError("an installed package", f"'{package_name}'")
-        return str(path)
+        found = ament.package_share(package_name)
+        return str(found or missing_prefix(package_name) / "share" / package_name)
+
+
+def missing_prefix(package: str) -> Path:
+    """Return the prefix that stands for that of a package that is not installed."""
+    return Path(unavailable.text_for(unavailable.missing_package(package)))
 
 
 class ExecutableInPackage(Substitution):
@@ -159,9 +103,10 @@ class ExecutableInPackage(Substitution):
     def perform(self, context: LaunchContext) -> str:
         prefix = FindPackagePrefix(self.package).perform(context)
         name = perform(context, self.executable)
-        path = Path(prefix, "lib", perform(context, self.package), name)
+        package = perform(context, self.package)
+        path = Path(unavailable.available(prefix), "lib", package, name)
         if not os.path.isfile(path):
-            raise NotInstalledError("an executable of the package", str(path))
+            raise UnavailableError(f"an executable of the package '{package}'", f"'{name}'")
         return str(path)
 
 
@@ -176,7 +121,7 @@ class FindExecutable(Substitution):
         name = perform(context, self.name)
         path = shutil.which(name)
         if path is None:
-            raise NotInstalledError("an executable on the PATH", f"'{name}'")
+            raise UnavailableError("an executable on the PATH", f"'{name}'")
         return path
 
 
@@ -223,29 +168,7 @@ class PythonExpression(Substitution):
         try:
             return expression.evaluate(text, names)
         except ValueError as error:
-            raise LaunchFileError("a Python expression", f"{_quoted(text)}: {error}") from error
-
-
-class Command(Substitution):
-    """`$(command 'line')`: the output of a command."""
-
-    def __init__(self, command: Any, *, on_stderr: Any = "fail") -> None:
-        self.command, self.on_stderr = command, on_stderr
-
-    @override
-    def perform(self, context: LaunchContext) -> str:
-        line = perform(context, self.command)
-        try:
-            done = run_child(shlex.split(line) or [""], context.environment, COMMAND_TIMEOUT_S)
-        except OSError as error:
-            found = f"{_quoted(line)}: {error.strerror}"
-            raise LaunchFileError("a command that runs", found) from error
-        except (ChildBoundError, ValueError) as error:
-            raise LaunchFileError("a command that runs", f"{_quoted(line)}: {error}") from error
-        if done.returncode != 0 or (done.stderr and perform(context, self.on_stderr) == "fail"):
-            found = f"{_quoted(line)}: {done.stderr.strip()}"
-            raise LaunchFileError("a command that succeeds", found)
-        return done.stdout
+            raise LaunchFileError("a Python expression", f"{quoted(text)}: {error}") from error
 
 
 class _Logic(Substitution):
@@ -259,46 +182,67 @@ class _Logic(Substitution):
     def holds(self, context: LaunchContext) -> bool:
         raise NotImplementedError
 
+    def values(self, context: LaunchContext) -> list[bool]:
+        """Return the values of all operands: each has to be a boolean."""
+        return [truth(context, operand) for operand in self.operands]
+
 
 class NotSubstitution(_Logic):
     """`$(not a)`."""
 
-    @override
-    def holds(self, context: LaunchContext) -> bool:
-        return not is_true(context, self.operands[0])
-
-
-class AndSubstitution(_Logic):
-    """`$(and a b)`."""
+    def __init__(self, value: Any) -> None:
+        super().__init__(value)
 
     @override
     def holds(self, context: LaunchContext) -> bool:
-        return all(is_true(context, operand) for operand in self.operands)
+        return not self.values(context)[0]
 
 
-class OrSubstitution(_Logic):
-    """`$(or a b)`."""
-
-    @override
-    def holds(self, context: LaunchContext) -> bool:
-        return any(is_true(context, operand) for operand in self.operands)
-
-
-class AllSubstitution(AndSubstitution):
+class AllSubstitution(_Logic):
     """`$(all a b c)`."""
 
+    @override
+    def holds(self, context: LaunchContext) -> bool:
+        return all(self.values(context))
 
-class AnySubstitution(OrSubstitution):
+
+class AnySubstitution(_Logic):
     """`$(any a b c)`."""
+
+    @override
+    def holds(self, context: LaunchContext) -> bool:
+        return any(self.values(context))
+
+
+class AndSubstitution(AllSubstitution):
+    """`$(and a b)`."""
+
+    def __init__(self, left: Any, right: Any) -> None:
+        super().__init__(left, right)
+
+
+class OrSubstitution(AnySubstitution):
+    """`$(or a b)`."""
+
+    def __init__(self, left: Any, right: Any) -> None:
+        super().__init__(left, right)
 
 
 class EqualsSubstitution(_Logic):
-    """`$(equals a b)`."""
+    """`$(equals a b)`: booleans by their value, numbers by closeness, else texts."""
+
+    def __init__(self, left: Any, right: Any) -> None:
+        super().__init__(_as_operand(left), _as_operand(right))
 
     @override
     def holds(self, context: LaunchContext) -> bool:
         one, other = (perform(context, operand) for operand in self.operands)
-        return one == other
+        if one.lower() in _BOOLEANS and other.lower() in _BOOLEANS:
+            return _BOOLEANS[one.lower()] == _BOOLEANS[other.lower()]
+        try:
+            return math.isclose(float(one), float(other))
+        except ValueError:
+            return one == other
 
 
 class NotEqualsSubstitution(EqualsSubstitution):
@@ -309,6 +253,18 @@ class NotEqualsSubstitution(EqualsSubstitution):
         return not super().holds(context)
 
 
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+
+
+def _as_operand(value: Any) -> Any:
+    """Return a substitution as it is, and any other value as text."""
+    if is_substitution(value):
+        return value
+    if isinstance(value, bool):
+        return str(value).lower()
+    return "" if value is None else str(value)
+
+
 class IfElseSubstitution(Substitution):
     """`$(if condition a b)`."""
 
@@ -317,11 +273,12 @@ class IfElseSubstitution(Substitution):
 
     @override
     def perform(self, context: LaunchContext) -> str:
-        chosen = self.if_value if is_true(context, self.condition) else self.else_value
+        chosen = self.if_value if truth(context, self.condition) else self.else_value
         return perform(context, chosen)
 
 
-def _quoted(text: str) -> str:
+def quoted(text: str) -> str:
+    """Return an expression or a command for an error."""
     return f"'{shorten(text, _MAX_QUOTED)}'"
 
 

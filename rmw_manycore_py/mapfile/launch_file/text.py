@@ -10,10 +10,12 @@ from typing import Any
 from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_DEPTH
 from rmw_manycore_py.mapfile.launch_file import file_substitutions as f
 from rmw_manycore_py.mapfile.launch_file import substitutions as s
-from rmw_manycore_py.mapfile.launch_file.context import LaunchFileError
+from rmw_manycore_py.mapfile.launch_file.command import Command
+from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError
+from rmw_manycore_py.mapfile.launch_file.substitution import Substitution, TextSubstitution
 
-Parts = list[s.Substitution]
-_BY_NAME: dict[str, tuple[int, int, Callable[..., s.Substitution]]] = {
+Parts = list[Substitution]
+_BY_NAME: dict[str, tuple[int, int, Callable[..., Substitution]]] = {
     "var": (1, 2, lambda name, default=None: s.LaunchConfiguration(name, default=default)),
     "env": (1, 2, lambda name, default=None: s.EnvironmentVariable(name, default_value=default)),
     "find-pkg-share": (1, 1, s.FindPackageShare),
@@ -23,7 +25,7 @@ _BY_NAME: dict[str, tuple[int, int, Callable[..., s.Substitution]]] = {
     "filename": (0, 0, s.ThisLaunchFile),
     "dirname": (0, 0, s.ThisLaunchFileDir),
     "eval": (1, 2, s.PythonExpression),
-    "command": (1, 2, lambda line, on_stderr="fail": s.Command(line, on_stderr=on_stderr)),
+    "command": (1, 2, lambda line, on_stderr="fail": Command(line, on_stderr=on_stderr)),
     "not": (1, 1, s.NotSubstitution),
     "all": (1, 99, s.AllSubstitution),
     "any": (1, 99, s.AnySubstitution),
@@ -36,7 +38,7 @@ _BY_NAME: dict[str, tuple[int, int, Callable[..., s.Substitution]]] = {
     "or": (2, 2, s.OrSubstitution),
     "equals": (2, 2, s.EqualsSubstitution),
     "not-equals": (2, 2, s.NotEqualsSubstitution),
-    "if": (1, 3, s.IfElseSubstitution),
+    "if": (2, 3, s.IfElseSubstitution),
 }
 
 
@@ -48,13 +50,13 @@ def parse(text: str) -> Parts:
     """Split a text into literal parts and substitutions."""
     reader = _Reader(text)
     parts = reader.parts(lambda _char: False)
-    return parts or [s.TextSubstitution(text="")]
+    return parts or [TextSubstitution(text="")]
 
 
 def split_words(parts: Parts) -> list[Parts]:
     """Split a command line at spaces; the values of substitutions are never split."""
     line = "".join(
-        part.text if isinstance(part, s.TextSubstitution) else chr(_PLACEHOLDER + index)
+        part.text if isinstance(part, TextSubstitution) else chr(_PLACEHOLDER + index)
         for index, part in enumerate(parts)
     )
     try:
@@ -64,9 +66,9 @@ def split_words(parts: Parts) -> list[Parts]:
     return [[_part(char, parts) for char in word] for word in words]
 
 
-def _part(char: str, parts: Parts) -> s.Substitution:
+def _part(char: str, parts: Parts) -> Substitution:
     index = ord(char) - _PLACEHOLDER
-    return parts[index] if 0 <= index < len(parts) else s.TextSubstitution(text=char)
+    return parts[index] if 0 <= index < len(parts) else TextSubstitution(text=char)
 
 
 class _Reader:
@@ -83,7 +85,7 @@ class _Reader:
             # In launch any backslash before a dollar escapes it, even one that is escaped itself.
             is_escaped = self._text[self._at - 1 : self._at] == "\\"
             if self._text.startswith("$(", self._at) and not is_escaped:
-                parts += [s.TextSubstitution(text=plain)] if plain else []
+                parts += [TextSubstitution(text=plain)] if plain else []
                 plain = ""
                 parts.append(self._substitution())
                 continue
@@ -91,9 +93,9 @@ class _Reader:
                 self._at += 1  # launch takes any character after a backslash as it is
             plain += self._text[self._at : self._at + 1]
             self._at += 1
-        return parts + ([s.TextSubstitution(text=plain)] if plain else [])
+        return parts + ([TextSubstitution(text=plain)] if plain else [])
 
-    def _substitution(self) -> s.Substitution:
+    def _substitution(self) -> Substitution:
         self._depth += 1
         if self._depth > MAX_DEPTH:
             raise LaunchFileError(f"at most {MAX_DEPTH} levels of substitutions", "more")
@@ -132,4 +134,4 @@ class _Reader:
         if self._at >= len(self._text):
             raise LaunchFileError(f"a closing {quote}", repr(self._text))
         self._at += 1
-        return parts or [s.TextSubstitution(text="")]
+        return parts

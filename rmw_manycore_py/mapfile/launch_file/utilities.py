@@ -8,13 +8,15 @@ from collections.abc import Iterable
 from typing import Any
 
 from rmw_manycore_py.mapfile.launch_file.actions import Action
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchFileError
-from rmw_manycore_py.mapfile.launch_file.substitutions import (
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
+from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError
+from rmw_manycore_py.mapfile.launch_file.substitution import (
     Substitution,
     TextSubstitution,
-    is_true,
-    perform,
+    condition_holds,
+    text_or_missing,
 )
+from rmw_manycore_py.mapfile.launch_file.typed_values import kind_of, normalise, perform_typed
 
 
 class InvalidLaunchFileError(Exception):
@@ -61,24 +63,23 @@ def normalize_to_list_of_entities(entities: Any) -> list[Any]:
 
 def perform_substitutions(context: LaunchContext, subs: Any) -> str:
     """Return the concatenated text of substitutions."""
-    return perform(context, subs)
+    return text_or_missing(context, subs)
 
 
-def normalize_typed_substitution(value: Any, _data_type: Any = None) -> Any:
-    """Return the value unchanged; `perform_typed_substitution` accepts it."""
-    return value
+def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
+    """Return a value that `perform_typed_substitution` accepts."""
+    return normalise(value, kind_of(data_type))
 
 
 def perform_typed_substitution(context: LaunchContext, value: Any, data_type: Any) -> Any:
     """Return the value of a substitution, converted to the type."""
-    if isinstance(value, (bool, int, float)):
-        return value
-    return is_true(context, value) if data_type is bool else data_type(perform(context, value))
+    kind = kind_of(data_type)
+    return perform_typed(context, normalise(value, kind), kind)
 
 
 def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bool:
     """Evaluate a condition."""
-    return is_true(context, expression)
+    return condition_holds(context, expression)
 
 
 def ensure_argument_type(*_what: Any) -> None:

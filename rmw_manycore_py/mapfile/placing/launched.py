@@ -16,6 +16,7 @@ from rmw_manycore_py.mapfile.launch_file import (
     LaunchFile,
     ParameterSource,
 )
+from rmw_manycore_py.mapfile.launch_file.unavailable import missing_package
 from rmw_manycore_py.mapfile.placing.parameters import Launched
 from rmw_manycore_py.mapfile.placing.placement import LaunchRules, PlacedComponent
 from rmw_manycore_py.mapfile.programs import executables
@@ -63,12 +64,13 @@ def program_of(launched: Launched, directory: Path) -> Program:
         raise MapfileError(launched.problem)
     if launched.package is not None and launched.executable is not None:
         found = executables.find_executable(launched.package, launched.executable)
-        expected, wanted = expected_executable(launched.package), launched.executable
+        expected, instead = missing_executable(launched.package, launched.executable)
     else:
         found = executables.find_command(launched.command, directory)
-        expected, wanted = expected_command(launched.command, directory)
+        expected, word = expected_command(launched.command, directory)
+        instead = f"'{word}'"
     if found is None:
-        problem = Problem(launched.file, launched.line, launched.label, expected, f"'{wanted}'")
+        problem = Problem(launched.file, launched.line, launched.label, expected, instead)
         raise MapfileError(problem)
     return replace(found, prefix=launched.prefix)
 
@@ -93,12 +95,15 @@ def expected_command(words: tuple[str, ...] | list[str], directory: Path) -> tup
     return "an existing Python file" if word.endswith(".py") else "an installed Python module", word
 
 
-def expected_executable(package: str) -> str:
-    """Return a description of a package's executables, for errors."""
+def missing_executable(package: str, executable: str) -> tuple[str, str]:
+    """Return what is expected and found where a package has no such executable."""
     known = executables.executables_of(package)
-    if known or ament.package_prefix(package):
-        return f"an executable of the package '{package}' ({', '.join(known) or 'it has none'})"
-    return f"an executable of the package '{package}' (it is not installed)"
+    has_directory = any((prefix / "lib" / package).is_dir() for prefix in ament.prefixes())
+    if not known and not has_directory and ament.package_prefix(package) is None:
+        error = missing_package(package)
+        return error.expected, error.found
+    names = ", ".join(known) or "it has none"
+    return f"an executable of the package '{package}' ({names})", f"'{executable}'"
 
 
 def launch_rules(
@@ -152,4 +157,6 @@ def _values(sources: tuple[ParameterSource, ...], full_name: str) -> dict[str, A
             values |= values_for(read_text(source.text, source.file), full_name)
         else:
             values |= source
-    return values
+    return {
+        name: list(value) if isinstance(value, tuple) else value for name, value in values.items()
+    }

@@ -21,6 +21,7 @@ from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.launch_file import (
     ExpandedFile,
     ForAllNodes,
+    GivenByName,
     LaunchedComponent,
     LaunchedNode,
     ParameterSource,
@@ -141,9 +142,14 @@ def file_names(sources: Sequence[Source], stem: str) -> list[str]:
 
 
 def _typed_by_rcl(source: Mapping[str, Any], launched: Launched) -> dict[str, Any]:
-    """Return values as rcl reads them from the file that launch writes."""
+    """Return values as rcl reads them from the file or the options that launch writes."""
     if not source:
         return {}
+    if isinstance(source, GivenByName):
+        with overrides() as read:
+            for name, value in source.items():
+                _add_option(read, f"{name}:={value}", launched)
+            return values_for(read.sections(), "/any")
     text = yaml.dump({ALL_NODES: {"ros__parameters": dict(source)}}, Dumper=_Dumper)
     try:
         return values_for(read_text(text, launched.file), "/any")

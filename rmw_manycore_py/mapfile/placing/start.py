@@ -11,8 +11,8 @@ from rmw_manycore_py.mapfile.format.model import NodeSection
 from rmw_manycore_py.mapfile.launch_file import LaunchedNode, LaunchFile
 from rmw_manycore_py.mapfile.placing.launched import (
     expected_command,
-    expected_executable,
     find_launched,
+    missing_executable,
     program_of,
 )
 from rmw_manycore_py.mapfile.placing.parameters import (
@@ -119,8 +119,8 @@ def _program(mapfile: Mapfile, name: str, node: NodeSection, launched: Launched 
         missing = problem(("nodes", name, key), "an installed Python module", f"'{node.module}'")
     elif node.package is not None and node.executable is not None:
         found = executables.find_executable(node.package, node.executable)
-        expected = expected_executable(node.package)
-        missing = problem(("nodes", name, "executable"), expected, f"'{node.executable}'")
+        expected, instead = missing_executable(node.package, node.executable)
+        missing = problem(("nodes", name, "executable"), expected, instead)
     elif node.command is not None:
         found = executables.find_command(node.command, directory)
         expected, word = expected_command(node.command, directory)

@@ -119,7 +119,9 @@ def test_nodes_that_cannot_run_here_are_comments(tmp_path: Path, prefix: Path) -
     assert "  talker:" in lines
     (comment,) = (line for line in lines if "listener" in line)
     assert comment.startswith("  # listener cannot run here: ")
-    assert comment.endswith("the package 'absent' (it is not installed), found 'listener'")
+    assert comment.endswith(
+        "the package 'absent', found that it is not installed: pip install ./absent"
+    )
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text("\n".join(lines))
     assert [node.name for node in check(mapfile).nodes] == ["talker"]

@@ -1,2 +1,7 @@
+from launch import LaunchDescription
 from launch.actions import DanceAction
-# expected: unknown_action.launch.py:1: expected launch code that is understood here, found ImportError: cannot import name 'DanceAction' from 'launch.actions' (unknown location)
+
+
+def generate_launch_description():
+    return LaunchDescription([DanceAction()])
+# expected: unknown_action.launch.py:6: expected a name of launch that is supported here, found 'launch.actions.DanceAction'

@@ -1,3 +1,11 @@
+import launch.no_such_part
 from launch import LaunchDescription
-from launch.no_such_part import OnProcessExit
-# expected: unknown_import.launch.py:2: expected launch code that is understood here, found ModuleNotFoundError: No module named 'launch.no_such_part'
+
+
+class Mine(launch.no_such_part.dances.Dance):
+    pass
+
+
+def generate_launch_description():
+    return LaunchDescription([])
+# expected: unknown_import.launch.py:5: expected a name of launch that is supported here, found 'launch.no_such_part.dances.Dance'

@@ -15,8 +15,8 @@ from rmw_manycore_py.mapfile.launch_file import (
     ExpandedFile,
     LaunchedNode,
     LaunchFile,
+    command,
     read_launch_file,
-    substitutions,
 )
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
 from rmw_manycore_py.mapfile.launch_file.substitutions import perform
@@ -321,19 +321,16 @@ def test_an_installed_launch_package_is_left_as_it_was(
 
 
 def test_arrays_are_of_one_type(read: Read) -> None:
-    """ROS 2 launch converts mixed numbers to floats, and any other mixture to strings."""
-    text = """\
-launch:
-  - node:
-      pkg: demo
-      exec: talker
-      param: [{name: x, value: [1, 2.5]}, {name: y, value: [1, a]}, {name: z, value: [1, 2]}]
-"""
-    assert values(read("demo.launch.yaml", text).nodes[0]) == {
-        "x": [1.0, 2.5],
-        "y": ["1", "a"],
-        "z": [1, 2],
-    }
+    """ROS 2 launch converts mixed numbers in Python to floats, and refuses any other mixture."""
+    node = "launch:\n  - node: {{exec: sh, param: [{{name: x, value: {0}}}]}}\n"
+    assert values(read("demo.launch.yaml", node.format("[1, 2]")).nodes[0]) == {"x": [1, 2]}
+    for mixed in ("[1, 2.5]", "[1, a]"):
+        with pytest.raises(MapfileError, match=r"yaml:2: param: expected .*list"):
+            read("demo.launch.yaml", node.format(mixed))
+    python = PYTHON.replace("'rate_hz': rate_hz", "'x': [1, 2.5]").replace(
+        '"rate_hz": rate_hz', '"x": [1, 2.5]'
+    )
+    assert values(read("demo.launch.py", python).nodes[0])["x"] == [1.0, 2.5]
 
 
 def test_files_that_include_others_twice_over_are_bounded(tmp_path: Path, read: Read) -> None:
@@ -360,13 +357,18 @@ def test_a_command_reads_nothing_and_prints_text(tmp_path: Path, read: Read) -> 
     assert launch.notices[0].endswith(": said: ")
     file = tmp_path / "bytes"
     file.write_bytes(b"\xff")
-    with pytest.raises(MapfileError, match=r"expected a command that runs, found .*can't decode"):
-        read("demo.launch.xml", f"""<launch><log message="$(command 'cat {file}')"/></launch>""")
+    launch = read(
+        "demo.launch.xml", f"""<launch><log message="$(command 'cat {file}')"/></launch>"""
+    )
+    assert "expected a command that runs, found" in launch.notices[0]
+    assert "can't decode" in launch.notices[0]
 
 
 def test_a_command_that_does_not_end_is_stopped(
     read: Read, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(substitutions, "COMMAND_TIMEOUT_S", 0.1)
-    with pytest.raises(MapfileError, match=r"found 'sleep 1000': no end after 0.1 s"):
-        read("demo.launch.xml", """<launch><log message="$(command 'sleep 1000')"/></launch>""")
+    monkeypatch.setattr(command, "TIMEOUT_S", 0.1)
+    text = """<launch><node exec="$(command 'sleep 1000')" name="n"/></launch>"""
+    (node,) = read("demo.launch.xml", text).nodes
+    assert node.problem is not None
+    assert node.problem.found == "'sleep 1000': no end after 0.1 s"

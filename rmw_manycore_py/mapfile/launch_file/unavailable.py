@@ -1,0 +1,50 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Texts that stand for what this machine lacks, each with the reason.
+
+Code of a launch file joins such a text with others and passes it on, as a path or as a value. What
+finally uses the result cannot run here. A process reads one launch file, so it has one registry.
+"""
+
+from __future__ import annotations
+
+import re
+
+from rmw_manycore_py.mapfile.launch_file.refusals import UnavailableError
+
+# Absolute, for os.path.join; no file has such a name.
+_ROOT = "/.unavailable/"
+_PLACE = re.compile(re.escape(_ROOT) + r"(\d+)")
+_errors: list[UnavailableError] = []
+
+
+def text_for(error: UnavailableError) -> str:
+    """Return the text that stands for what is missing."""
+    for number, known in enumerate(_errors):
+        if (known.expected, known.found) == (error.expected, error.found):
+            return f"{_ROOT}{number}"
+    _errors.append(error)
+    return f"{_ROOT}{len(_errors) - 1}"
+
+
+def error_in(text: str) -> UnavailableError | None:
+    """Return why a text cannot be used here; None if it can."""
+    found = _PLACE.search(text) if _ROOT in text else None
+    if found is None or int(found[1]) >= len(_errors):
+        return None
+    known = _errors[int(found[1])]
+    return UnavailableError(known.expected, known.found, known.key)
+
+
+def available(text: str) -> str:
+    """Return the text; raise UnavailableError if part of it stands for something missing."""
+    error = error_in(text)
+    if error is not None:
+        raise error
+    return text
+
+
+def missing_package(name: str) -> UnavailableError:
+    """Return the error for a package that is not installed."""
+    return UnavailableError(
+        f"the package '{name}'", f"that it is not installed: pip install ./{name}"
+    )

@@ -1,0 +1,37 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Generated launch files have the values that launch gives them, as rcl reads them."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+import ros2_packages
+from launch_values import by_launch, by_us, write
+from made_launch_values import Made, made
+
+pytestmark = pytest.mark.unit
+
+# What launch 3.4.3 and launch_ros 0.26.6 make of 500 files: `tests/launch_values.py 0 500`.
+SEEN = Path(__file__).parent / "values_of_launch.jsonl"
+PARTS = 5
+
+
+@pytest.mark.parametrize("part", range(PARTS))
+def test_values_are_those_that_launch_was_seen_to_give(part: int, tmp_path: Path) -> None:
+    lines = SEEN.read_text(encoding="utf-8").splitlines()
+    assert len(lines) == 500
+    for number, line in list(enumerate(lines))[part::PARTS]:
+        seen = json.loads(line)
+        file = write(tmp_path, number, Made(seen["suffix"], seen["content"]))
+        assert by_us(file) == seen["expected"], file.read_text()
+
+
+@pytest.mark.skipif(not ros2_packages.are_available(), reason=ros2_packages.REASON)
+def test_values_are_those_that_launch_gives(tmp_path: Path) -> None:
+    environment = {**os.environ, **ros2_packages.environment(tmp_path / "packages")}
+    files = [write(tmp_path, number, made(number)) for number in range(1000, 1100)]
+    for file, expected in zip(files, by_launch(files, environment), strict=True):
+        assert by_us(file) == expected, file.read_text()
