@@ -34,5 +34,8 @@ __all__ = [
 
 
 def check(path: Path | str) -> Placement:
-    """Read a mapfile and resolve everything it refers to; raise MapfileError for all problems."""
-    return resolve(load_mapfile(path))
+    """Read a mapfile and resolve everything it refers to; raise MapfileError for all problems.
+
+    Nodes of a plan need not be installed.
+    """
+    return resolve(load_mapfile(path), to_start=False)

@@ -9,15 +9,17 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, MapfileError
-from rmw_manycore_py.mapfile.launch_file import LaunchedNode, read_launch_file
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, MapfileError, shorten
+from rmw_manycore_py.mapfile.launch_file import LaunchedNode, LaunchFile, read_launch_file
 from rmw_manycore_py.mapfile.placing.launched import program_of
 from rmw_manycore_py.mapfile.placing.parameters import Launched
 from rmw_manycore_py.mapfile.programs.executables import find_module
 from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
 from rmw_manycore_py.ros.names import full_node_name
+from rmw_manycore_py.topology import Topology, profile
 
 _ADVICE = "# Choose the clusters. A node gets the first free core unless 'core' is set."
+_PLAN = "plan: true  # nodes need not be installed for map check and map show; run needs them"
 _LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch", ".xml", ".yaml", ".yml")
 
 
@@ -29,6 +31,8 @@ class _Entry:
     subscribe: dict[str, str] = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
     missing: str = ""  # why it cannot run on this machine
+    is_mapped: bool = True  # else only a comment
+    cluster: int = 1
 
 
 def init(
@@ -36,11 +40,13 @@ def init(
     directory: Path | None = None,
     platform: str = "host",
     arguments: Mapping[str, str] | None = None,
+    *,
+    plan: bool = False,
 ) -> str:
     """Return a mapfile with the nodes found in Python files, directories and one launch file.
 
     Only the clusters are left to fill in. `directory` is the directory of the future mapfile,
-    `arguments` are those of the launch file.
+    `arguments` are those of the launch file. A plan has all nodes, also those that cannot run here.
     """
     directory = (directory or Path.cwd()).resolve()
     launches = [path for path in sources if path.is_file() and _is_launch_file(path)]
@@ -49,22 +55,40 @@ def init(
     if len(launches) > 1:
         raise ManycoreError("a mapfile has one launch file", EXIT_BAD_INPUT)
     entries = [entry for file in _python_files(sources) for entry in _entries_of(file, directory)]
+    unread: list[str] = []
     for launch in launches:
-        entries = [*_entries_of_launch(launch, arguments or {}, directory), *entries]
+        launched = read_launch_file(launch.resolve(), arguments or {})
+        found_here = _entries_to_plan if plan else _entries_to_run
+        entries = [*found_here(launched, directory), *entries]
+        unread += _unread(launched)
     entries = _with_own_names(entries)
-    if not [entry for entry in entries if not entry.missing]:
+    mapped = [entry for entry in entries if entry.is_mapped]
+    if not mapped:
         places = ", ".join(map(str, sources))
         why = "".join(f"\n{entry.name}: {entry.missing}" for entry in entries)
         found = "no nodes that can run here" if entries else "no nodes"
         raise ManycoreError(f"{found} found in {places}{why}", EXIT_BAD_INPUT)
-    head = [_ADVICE, f"platform: {platform}"]
+    head = [_ADVICE, f"platform: {platform}", *([_PLAN] if plan else [])]
     head += [f"launch_path: {_relative(launch, directory)}" for launch in launches]
     if arguments:
         head.append("launch_arguments:")
         head += [f"  {name}: {json.dumps(value)}" for name, value in arguments.items()]
-    return (
-        "\n".join([*head, "nodes:", *(line for entry in entries for line in _lines(entry))]) + "\n"
-    )
+    if plan:
+        _spread(mapped, profile(platform))
+        head += [f"# {shorten(notice)}" for notice in unread]
+    lines = (line for entry in entries for line in _lines(entry))
+    text = "\n".join([*head, "nodes:", *lines]) + "\n"
+    return text.replace(f"{directory}{os.sep}", "")  # in comments on missing things
+
+
+def _spread(entries: Sequence[_Entry], topology: Topology) -> None:
+    """Fill one cluster after the other."""
+    free = [cluster.id for cluster in topology.clusters for _ in cluster.free]
+    if len(entries) > len(free):
+        text = f"{len(entries)} nodes are more than the {len(free)} cores of '{topology.profile}'"
+        raise ManycoreError(f"{text}: choose another --profile", EXIT_BAD_INPUT)
+    for entry, cluster in zip(entries, free, strict=False):
+        entry.cluster = cluster
 
 
 def _is_launch_file(path: Path) -> bool:
@@ -110,17 +134,47 @@ def _remarks(node: SourceNode) -> list[str]:
     return [f"{node.file.name}:{lines}: topic or type is computed; add it here"] if lines else []
 
 
-def _entries_of_launch(launch: Path, arguments: Mapping[str, str], directory: Path) -> list[_Entry]:
+def _entries_to_run(launch: LaunchFile, directory: Path) -> list[_Entry]:
+    """Return the nodes; those that cannot run here are comments."""
     nodes: list[Launched] = []
-    for node in read_launch_file(launch.resolve(), arguments).nodes:
+    for node in launch.nodes:
         nodes.append(node)
         if _missing(node, directory):  # then use its components, if they can run standalone
             nodes += [one for one in node.components if not _missing(one, directory)]
-    several = [node.label for node in nodes]
+    entries = _named_entries(nodes, directory)
+    for entry in entries:
+        entry.is_mapped = not entry.missing
+    return entries
+
+
+def _entries_to_plan(launch: LaunchFile, directory: Path) -> list[_Entry]:
+    """Return the nodes; what is missing here is a comment to each."""
+    entries = _named_entries(launch.nodes, directory)
+    for entry in entries:
+        if entry.missing:
+            entry.remarks.append(f"cannot run here: {entry.missing}")
+    return entries
+
+
+def _unread(launch: LaunchFile) -> list[str]:
+    """Return the notices of a launch file except those on its nodes, which have comments."""
+    problems = [node.problem for node in launch.nodes if node.problem is not None]
+    return [
+        notice
+        for notice in launch.notices
+        if not any(
+            notice.startswith(f"{one.file}:{one.line}:") and notice.endswith(f"found {one.found}")
+            for one in problems
+        )
+    ]
+
+
+def _named_entries(nodes: Sequence[Launched], directory: Path) -> list[_Entry]:
+    labels = [node.label for node in nodes]
     return [
         _Entry(
             node.label
-            if several.count(node.label) == 1
+            if labels.count(node.label) == 1
             else full_node_name(node.namespace, node.label),
             remarks=_components(node),
             missing=_missing(node, directory),
@@ -164,7 +218,7 @@ def _with_own_names(entries: Iterable[_Entry]) -> list[_Entry]:
     named: dict[str, _Entry] = {}
     for entry in entries:
         known = named.get(entry.name)
-        if known is not None and known.missing:
+        if known is not None and not known.is_mapped:
             named[entry.name] = entry
             continue
         if known is not None and not known.start:
@@ -184,12 +238,12 @@ def _with_own_names(entries: Iterable[_Entry]) -> list[_Entry]:
 
 
 def _lines(entry: _Entry) -> Iterator[str]:
-    if entry.missing:
+    if not entry.is_mapped:
         yield f"  # {entry.name} cannot run here: {entry.missing}"
         return
     yield f"  {entry.name}:"
     yield from (f"    # {remark}" for remark in entry.remarks)
-    yield "    cluster: 1  # choose"
+    yield f"    cluster: {entry.cluster}  # choose"
     if entry.start:
         yield f"    {entry.start}"
     for key, topics in (("publish", entry.publish), ("subscribe", entry.subscribe)):

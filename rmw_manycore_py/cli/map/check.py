@@ -20,15 +20,20 @@ from rmw_manycore_py.mapfile import load_mapfile, resolve
 def command(mapfile: Path, as_json: bool) -> None:
     """Check MAPFILE and everything it refers to, without starting anything."""
     try:
-        placement = resolve(load_mapfile(mapfile))
+        placement = resolve(load_mapfile(mapfile), to_start=False)
     except MapfileError as error:
         if as_json:
             print_json({"valid": False, "problems": [vars(p) for p in error.problems]})
         raise
+    missing = {node.full_name: node.missing for node in placement.nodes if node.missing}
     if as_json:
-        print_json({"valid": True, "notices": placement.notices})
+        print_json({"valid": True, "notices": placement.notices, "missing": missing})
         return
     print_notices(placement.notices)
     nodes = counted(len(placement.nodes), "node")
     clusters = counted(len({node.cluster for node in placement.nodes}), "cluster")
     echo(f"{mapfile}: {nodes} in {clusters}, {counted(len(placement.topics), 'topic')}: valid")
+    for name, reason in missing.items():
+        echo(f"{name} cannot run here: {reason}")
+    if missing:
+        echo(f"a plan: {len(missing)} of {nodes} cannot run here")

@@ -20,25 +20,32 @@ from rmw_manycore_py.topology import PROFILES
         "manycore map init talker.py listener.py",
         "manycore map init src/ launch/demo.launch.xml --profile coolidge -o map.yaml",
         "manycore map init launch/robot.launch.py namespace:=left -o map.yaml",
+        "manycore map init --plan robot.launch.py --profile coolidge -o plan.yaml",
     ),
 )
 @click.argument("sources", nargs=-1, required=True)
 @click.option("--profile", type=click.Choice(PROFILES), default="host", show_default=True)
+@click.option(
+    "--plan",
+    is_flag=True,
+    help="Include nodes that are not installed here, each with a comment on what is missing.",
+)
 @click.option(
     "-o",
     "--output",
     type=click.Path(dir_okay=False, path_type=Path),
     help="File to write; must not exist.  [default: standard output]",
 )
-def command(sources: tuple[str, ...], profile: str, output: Path | None) -> None:
+def command(sources: tuple[str, ...], profile: str, plan: bool, output: Path | None) -> None:
     """Write a mapfile template for the nodes in SOURCES; only the clusters are left to choose.
 
     SOURCES are Python files, directories of them, and at most one launch file with values for its
-    arguments as NAME:=VALUE.
+    arguments as NAME:=VALUE. To plan a chip for a launch file, its packages need not be installed:
+    --plan spreads all of its nodes over the clusters, and 'map check' and 'map show' take them.
     """
     arguments = dict(source.split(":=", 1) for source in sources if ":=" in source)
     files = [Path(source) for source in sources if ":=" not in source]
-    text = init(files, output.parent if output else None, profile, arguments)
+    text = init(files, output.parent if output else None, profile, arguments, plan=plan)
     if output is None:
         echo(text, nl=False)
         return

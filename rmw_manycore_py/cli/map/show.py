@@ -29,7 +29,7 @@ from rmw_manycore_py.topology import as_host_cpu, host_cpu_text
 @json_option
 def command(mapfile: Path, as_json: bool) -> None:
     """Show the placement of MAPFILE: nodes, topic table, memory of the clusters."""
-    placement = resolve(load_mapfile(mapfile))
+    placement = resolve(load_mapfile(mapfile), to_start=False)
     if as_json:
         print_json(as_data(placement))
         return
@@ -45,7 +45,7 @@ def _show_nodes(placement: Placement) -> None:
     table = new_table("node", "#cluster", "#core", "#host CPU", "command")
     for node in placement.nodes:
         place = (str(node.cluster), str(node.core), str(node.host_cpu))
-        table.add_row(node.full_name, *place, shlex.join(node.program))
+        table.add_row(node.full_name, *place, shlex.join(node.program) or node.missing)
         for core, cpu in node.workers:
             table.add_row("  worker", str(core.cluster), str(core.core), str(cpu), "")
     if placement.bridge:

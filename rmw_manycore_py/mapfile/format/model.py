@@ -317,6 +317,10 @@ class MapfileSections(Section):
     launch_arguments: dict[Text, EnvironmentValue] = Field(
         default_factory=dict, description="Arguments of the launch file"
     )
+    plan: StrictBool = Field(
+        default=False,
+        description="Check and show nodes that are not installed here; only `run` needs them",
+    )
     allow_shared_cores: StrictBool = Field(
         default=False, description="Let several nodes share a core"
     )

@@ -73,6 +73,7 @@ class PlacedNode:
     :param rules: when it starts, and whether it is started again.
     :param terminal: whether it has a terminal of its own.
     :param scheduling: policy and priority; None where the node inherits them.
+    :param missing: why it cannot run here, in a plan; else empty.
     """
 
     name: str
@@ -92,6 +93,7 @@ class PlacedNode:
     rules: LaunchRules = NO_RULES
     terminal: bool = False
     scheduling: Scheduling | None = None
+    missing: str = ""
 
     @property
     def place(self) -> Core:
@@ -115,7 +117,12 @@ class PlacedNode:
         return [word for word in words if isinstance(word, GeneratedFile)]
 
     def command(self, directory: Path) -> list[str]:
-        """Return the command line with the directory that its generated files are in."""
+        """Return the command line with the directory that its generated files are in.
+
+        It is empty for a node that cannot run here.
+        """
+        if self.missing:
+            return []
         words = words_of(self.parameter_sources, self.file_stem)
         given = [str(directory / w.name) if isinstance(w, GeneratedFile) else w for w in words]
         return [*self.program, *self.ros_arguments, *given]

@@ -54,14 +54,18 @@ from rmw_manycore_py.topology import (
 _MALLOC_THRESHOLD = str(1 << 30)
 
 
-def resolve(mapfile: Mapfile, occupied: Collection[Core] = ()) -> Placement:
+def resolve(
+    mapfile: Mapfile, occupied: Collection[Core] = (), *, to_start: bool = True
+) -> Placement:
     """Resolve everything a mapfile refers to.
 
     :param occupied: cores used by nodes of other runs on the platform.
+    :param to_start: false to look only: then nodes of a plan need not be installed.
     :raises MapfileError: for everything that does not exist.
     """
     launch = read_launch(mapfile)
-    return _placement(mapfile, node_starts(mapfile, launch), launch, occupied)
+    is_plan = mapfile.sections.plan and not to_start
+    return _placement(mapfile, node_starts(mapfile, launch, is_plan=is_plan), launch, occupied)
 
 
 def resolve_places(mapfile: Mapfile) -> Placement:
@@ -151,8 +155,13 @@ def read_launch(mapfile: Mapfile) -> LaunchFile | None:
     return launch
 
 
-def node_starts(mapfile: Mapfile, launch: LaunchFile | None) -> dict[str, NodeStart]:
-    """Return how each node is started; raise MapfileError for what does not exist."""
+def node_starts(
+    mapfile: Mapfile, launch: LaunchFile | None, *, is_plan: bool = False
+) -> dict[str, NodeStart]:
+    """Return how each node is started; raise MapfileError for what does not exist.
+
+    :param is_plan: whether programs may be missing.
+    """
     starts: dict[str, NodeStart] = {}
     owners: dict[str, str] = {}
     problems: list[Problem] = []
@@ -162,6 +171,8 @@ def node_starts(mapfile: Mapfile, launch: LaunchFile | None) -> dict[str, NodeSt
         except MapfileError as error:
             problems += error.problems
             continue
+        if not is_plan:
+            problems += start.missing
         starts[name] = start
         if start.full_name in owners and not _has_number(start):
             found = f"{start.full_name}, the name of '{owners[start.full_name]}'"
@@ -197,7 +208,8 @@ def _place(
         host_cpu=host_cpus[core],
         env={**_environment(mapfile, name, core, start), **worker_environment},
         cwd=_directory(mapfile, start),
-        program=_program(mapfile, name, start, host_cpus[core]),
+        program=() if start.missing else _program(mapfile, name, start, host_cpus[core]),
+        missing="; ".join(f"expected {one.expected}, found {one.found}" for one in start.missing),
         ros_arguments=ros_arguments(start),
         parameters=start.parameters,
         parameter_sources=start.parameter_sources,

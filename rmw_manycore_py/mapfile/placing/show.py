@@ -51,6 +51,7 @@ def _node(node: PlacedNode) -> dict[str, Any]:
             for core, cpu in node.workers
         ],
         "command": node.argv,
+        "missing": node.missing or None,
         "environment": node.env,
         "directory": str(node.cwd),
         "scheduling": asdict(node.scheduling) if node.scheduling else None,

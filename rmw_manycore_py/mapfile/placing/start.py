@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.model import NodeSection
 from rmw_manycore_py.mapfile.launch_file import LaunchedNode, LaunchFile
 from rmw_manycore_py.mapfile.placing.launched import (
@@ -47,10 +47,11 @@ class NodeStart:
     is_named: bool = True  # else the node keeps the name set by its code
     directory: str | None = None
     launched: Launched | None = None
+    missing: tuple[Problem, ...] = ()  # why there is no program
 
 
 def node_start(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> NodeStart:
-    """Return how a node is started; raise MapfileError if its program does not exist."""
+    """Return how a node is started; if its program does not exist, why."""
     node = mapfile.sections.nodes[name]
     launched = find_launched(mapfile, name, launch)
     namespace, full_name = _names(name, node, launched)
@@ -62,9 +63,15 @@ def node_start(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> NodeSt
     sources: tuple[Source, ...] = ()
     if takes_arguments:
         sources = sources_of(launched, files, node.parameters, NodeName(full_name, is_named))
+    program, missing = Program((), None), tuple[Problem, ...]()
+    try:
+        program = _program(mapfile, name, node, launched)
+    except MapfileError as error:
+        missing = error.problems
     return NodeStart(
         full_name=full_name,
-        program=_program(mapfile, name, node, launched),
+        program=program,
+        missing=missing,
         ros_arguments=takes_arguments,
         namespace=namespace,
         parameters=given_values(sources, launched, full_name),

@@ -17,7 +17,8 @@ def used_types(mapfile: Mapfile) -> set[str]:
     for node in sections.nodes.values():
         for key in ("publish", "subscribe", *CROSSINGS):
             found.update(getattr(node, key).values())
-    for start in node_starts(mapfile, read_launch(mapfile)).values():
+    starts = node_starts(mapfile, read_launch(mapfile), is_plan=sections.plan)
+    for start in starts.values():
         if start.program.source is not None:
             try:
                 found.update(imported_interfaces(start.program.source))
