@@ -76,7 +76,12 @@ def existing(sources: Iterable[ParameterSource]) -> Iterable[ParameterSource]:
         yield source
 
 
-def value_of(context: LaunchContext, value: Any) -> Any:
+def flat(context: LaunchContext, source: Mapping[Any, Any]) -> dict[str, Any]:
+    """Return parameters by full name; an array is a tuple, except that of a ParameterValue."""
+    return dict(_flat(context, source, ""))
+
+
+def _value_of(context: LaunchContext, value: Any) -> Any:
     """Return the value of a parameter as launch_ros evaluates it."""
     if isinstance(value, ParameterValue):
         return value.evaluate(context)
@@ -91,7 +96,8 @@ def value_of(context: LaunchContext, value: Any) -> Any:
 
 def _evaluate(context: LaunchContext, source: Any) -> ParameterSource:
     if isinstance(source, Mapping):
-        return dict(_flat(context, source, ""))
+        values = flat(context, source).items()
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in values}
     if isinstance(source, Parameter):
         return ForAllNodes({perform(context, source.name): source.value.evaluate(context)})
     if isinstance(source, ParameterFile):
@@ -107,7 +113,7 @@ def _flat(
         if isinstance(value, Mapping):
             yield from _flat(context, value, f"{name}.")
         else:
-            yield name, value_of(context, value)
+            yield name, _value_of(context, value)
 
 
 def _of_text(words: str) -> Any:
@@ -129,7 +135,7 @@ def _array(context: LaunchContext, items: Sequence[Any]) -> Any:
     ):
         return _of_text(perform(context, items))
     if types and types <= {int, float}:
-        return [item if types == {int} else float(item) for item in items]
+        return tuple(item if types == {int} else float(item) for item in items)
     return _uniform([_array_item(context, item) for item in items])
 
 
@@ -141,12 +147,12 @@ def _array_item(context: LaunchContext, item: Any) -> Any:
     raise LaunchFileError("a parameter value", repr(item))
 
 
-def _uniform(items: list[Any]) -> list[Any]:
+def _uniform(items: list[Any]) -> tuple[Any, ...]:
     kind = type(items[0]) if items else None
     if kind not in SCALARS or not all(isinstance(item, kind) for item in items):
         expected = "a list that is not empty, of bools, numbers or texts of one type"
         raise LaunchFileError(expected, repr(items))
-    return items
+    return tuple(items)
 
 
 def _usable(value: Any) -> Any:

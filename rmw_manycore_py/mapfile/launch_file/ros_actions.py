@@ -12,12 +12,7 @@ from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, join_namespace
 from rmw_manycore_py.mapfile.launch_file.events import change_state
 from rmw_manycore_py.mapfile.launch_file.launched import LaunchedNode
-from rmw_manycore_py.mapfile.launch_file.parameters import (
-    ParameterValue,
-    evaluate_all,
-    existing,
-    value_of,
-)
+from rmw_manycore_py.mapfile.launch_file.parameters import evaluate_all, existing, flat
 from rmw_manycore_py.mapfile.launch_file.process_actions import ProcessAction, known_text
 from rmw_manycore_py.mapfile.launch_file.substitution import perform
 
@@ -165,10 +160,8 @@ class SetParameter(Action):
 
     @override
     def execute(self, context: LaunchContext) -> None:
-        value = value_of(context, self.value)
-        if isinstance(value, list) and not isinstance(self.value, ParameterValue):
-            value = tuple(value)
-        context.settings.add_parameters((perform(context, self.name), value))
+        for parameter in flat(context, {perform(context, self.name): self.value}).items():
+            context.settings.add_parameters(parameter)
 
 
 class SetParametersFromFile(Action):
