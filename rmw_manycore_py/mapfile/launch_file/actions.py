@@ -25,21 +25,28 @@ from rmw_manycore_py.mapfile.launch_file.typed_values import FLOAT, coerce
 
 
 class Condition:
-    """Condition of an action."""
+    """Condition of an action; launch files also make their own, and call `_predicate_func`."""
+
+    def __init__(self, *, predicate: Callable[[LaunchContext], bool] | None = None) -> None:
+        self._predicate = predicate
+
+    def describe(self) -> str:
+        """Return a description, for launch files that print it."""
+        return type(self).__name__
 
     def evaluate(self, context: LaunchContext) -> bool:
-        """Return whether the condition holds."""
-        raise NotImplementedError
+        """Return whether the condition holds; without a predicate it does not."""
+        return self._predicate is not None and self._predicate(context)
 
 
 class IfCondition(Condition):
     """`if="..."`."""
 
     def __init__(self, predicate_expression: Any) -> None:
+        super().__init__(predicate=self._predicate_func)
         self.predicate_expression = predicate_expression
 
-    @override
-    def evaluate(self, context: LaunchContext) -> bool:
+    def _predicate_func(self, context: LaunchContext) -> bool:
         return condition_holds(context, self.predicate_expression)
 
 
@@ -47,18 +54,18 @@ class UnlessCondition(IfCondition):
     """`unless="..."`."""
 
     @override
-    def evaluate(self, context: LaunchContext) -> bool:
-        return not super().evaluate(context)
+    def _predicate_func(self, context: LaunchContext) -> bool:
+        return not super()._predicate_func(context)
 
 
 class LaunchConfigurationEquals(Condition):
     """Compares a launch argument with a text; an unset argument equals None."""
 
     def __init__(self, launch_configuration_name: str, expected_value: Any) -> None:
+        super().__init__(predicate=self._predicate_func)
         self.name, self.expected_value = launch_configuration_name, expected_value
 
-    @override
-    def evaluate(self, context: LaunchContext) -> bool:
+    def _predicate_func(self, context: LaunchContext) -> bool:
         found = context.launch_configurations.get(self.name)
         expected = self.expected_value
         return found == (None if expected is None else perform(context, expected))
@@ -68,8 +75,8 @@ class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
     """Negation of LaunchConfigurationEquals."""
 
     @override
-    def evaluate(self, context: LaunchContext) -> bool:
-        return not super().evaluate(context)
+    def _predicate_func(self, context: LaunchContext) -> bool:
+        return not super()._predicate_func(context)
 
 
 class Action:

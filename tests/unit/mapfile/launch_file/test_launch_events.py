@@ -312,3 +312,18 @@ def test_numbers_are_what_rcl_makes_of_them(tmp_path: Path, read: Read) -> None:
     mapfile.write_text("launch_path: demo.launch.xml\nnodes: {sh: {cluster: 1}}\n")
     (node,) = check(mapfile).nodes
     assert node.parameters == {"small": 1e-9}
+
+
+def test_a_launch_file_makes_conditions_of_its_own(read_python: Read) -> None:
+    launch = read_python(
+        "node('a', condition=Condition(predicate=lambda context: True)),"
+        "node('b', condition=Condition()), node('c', condition=Not(one)),"
+        "OpaqueFunction(function=lambda context: [node(str(one._predicate_func(context)))])",
+        "from launch import Condition\n"
+        "    from launch.conditions import IfCondition\n"
+        "    class Not(IfCondition):\n"
+        "        def __init__(self, other):\n"
+        "            Condition.__init__(self, predicate=lambda c: not other.evaluate(c))\n"
+        "    one = IfCondition('true')",
+    )
+    assert [one.label for one in launch.nodes] == ["a", "True"]
