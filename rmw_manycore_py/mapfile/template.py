@@ -66,6 +66,7 @@ def init(
     if not mapped:
         places = ", ".join(map(str, sources))
         why = "".join(f"\n{entry.name}: {entry.missing}" for entry in entries)
+        why += "".join(f"\n{notice}" for notice in unread)
         found = "no nodes that can run here" if entries else "no nodes"
         raise ManycoreError(f"{found} found in {places}{why}", EXIT_BAD_INPUT)
     head = [_ADVICE, f"platform: {platform}", *([_PLAN] if plan else [])]

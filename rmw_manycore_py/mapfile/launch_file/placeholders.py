@@ -77,3 +77,8 @@ class Missing(Substitution):
 
     def __exit__(self, *_exception: Any) -> None:
         """End a `with` block."""
+
+
+def reason_of(missing: Missing) -> UnavailableError:
+    """Return why something is missing."""
+    return UnavailableError(missing._error.expected, missing._error.found)

@@ -11,6 +11,7 @@ from rmw_manycore_py.mapfile.launch_file import actions as a
 from rmw_manycore_py.mapfile.launch_file.frame import MODULE_NAME
 from rmw_manycore_py.mapfile.launch_file.guard import guarded
 from rmw_manycore_py.mapfile.launch_file.missing_modules import open_or_missing
+from rmw_manycore_py.mapfile.launch_file.placeholders import Missing, reason_of
 
 
 def read_python(path: Path) -> a.LaunchDescription:
@@ -27,6 +28,8 @@ def read_python(path: Path) -> a.LaunchDescription:
         expected = "a function generate_launch_description"
         raise MapfileError(Problem(path, 0, "", expected, "none"))
     description = guarded(path, generate)
+    if isinstance(description, Missing):
+        raise reason_of(description)
     if not isinstance(description, a.LaunchDescription):
         expected = "a LaunchDescription from generate_launch_description"
         raise MapfileError(Problem(path, 0, "", expected, type(description).__name__))

@@ -138,3 +138,10 @@ def test_map_init_writes_a_plan(tmp_path: Path) -> None:
     made = manycore("map", "init", "--plan", str(launch), "--profile", "coolidge")
     assert made.exit_code == 0
     assert "platform: coolidge\nplan: true" in made.output
+
+
+def test_a_plan_without_nodes_says_what_was_left_out(tmp_path: Path) -> None:
+    launch = tmp_path / "robot.launch.xml"
+    launch.write_text('<launch><include file="$(find-pkg-share nav2)/a.launch.py"/></launch>')
+    with pytest.raises(ManycoreError, match=r"no nodes found in .*\n.*the package 'nav2', found"):
+        init([launch], tmp_path, plan=True)

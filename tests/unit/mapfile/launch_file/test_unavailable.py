@@ -166,6 +166,20 @@ def test_code_that_needs_what_is_missing_names_it(tmp_path: Path) -> None:
         )
 
 
+def test_a_description_made_by_a_missing_module_names_it(tmp_path: Path) -> None:
+    (tmp_path / "inner.launch.py").write_text(
+        "from no_moveit import generate_demo\n"
+        "def generate_launch_description():\n    return generate_demo()\n"
+    )
+    missing = "expected the Python module 'no_moveit', found that it is not installed"
+    with pytest.raises(MapfileError, match=f"inner.launch.py: {missing}"):
+        read_launch_file(tmp_path / "inner.launch.py")
+    include = "IncludeLaunchDescription([ThisLaunchFileDir(), '/inner.launch.py'])"
+    launch = read(tmp_path, f"{include}, node('b')")
+    assert reasons(launch) == {"b": None}
+    assert launch.notices[0].endswith(f"cannot run here: {missing}")
+
+
 def test_an_include_names_its_missing_package(tmp_path: Path) -> None:
     include = "IncludeLaunchDescription([FindPackageShare('absent'), '/launch/other.launch.py'])"
     (tmp_path / "inner.launch.py").write_text(
