@@ -35,3 +35,29 @@ def test_values_are_those_that_launch_gives(tmp_path: Path) -> None:
     files = [write(tmp_path, number, made(number)) for number in range(1000, 1100)]
     for file, expected in zip(files, by_launch(files, environment), strict=True):
         assert by_us(file) == expected, file.read_text()
+
+
+@pytest.mark.parametrize(
+    ("substitution", "expected"),
+    [
+        ("equals 0.3 0.30000000000000004", "true"),
+        ("equals 1 1.0000000001", "true"),
+        ("equals 1 1.00001", "false"),
+        ("not-equals 1e3 1000.0", "false"),
+        ("equals True 1", "true"),
+        ("equals 0 FALSE", "true"),
+        ("equals true yes", "false"),
+        ("equals nan nan", "false"),
+        ("equals a A", "false"),
+        ("not on", "false"),
+        ("any no off true", "true"),
+        ("all yes on 1", "true"),
+        ("all yes on 0", "false"),
+    ],
+)
+def test_logic_in_text(substitution: str, expected: str, tmp_path: Path) -> None:
+    """Launch 3.4.3 knows `any` and `all` in text, but fails to construct them."""
+    value = f'<param name="r" value="$({substitution})" type="str"/>'
+    node = f'<node exec="/bin/true" name="n">{value}</node>'
+    (found,) = by_us(write(tmp_path, 0, Made(".launch.xml", node))) or [None]
+    assert found == [["__node:=n"], {"r": repr(expected)}]
