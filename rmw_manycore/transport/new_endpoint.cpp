@@ -7,7 +7,7 @@
 #include "transport/qos/manual_liveliness.hpp"
 #include "transport/subscription/subscription_block.hpp"
 #include "transport/topic_dsm/topic_dsm_writer.hpp"
-#include "transport/transfer/topic_transfer.hpp"
+#include "transport/transfer/transfer.hpp"
 
 namespace manycore {
 namespace {
@@ -68,7 +68,7 @@ uint32_t enter_graph(
   const uint32_t taken = new_endpoint(registry, spec, kind, process);
   EndpointEntry & entry = registry.endpoints()[taken];
   entry.topic_dsm_size = configured == nullptr ? 0 : configured->topic_dsm_size;
-  entry.transfer = transfer_of(configured, spec, kind);
+  entry.transfer = transfer::kind_of(configured, spec, kind);
   try {
     const void * const block =
       kind == EndpointKind::publisher

@@ -24,8 +24,7 @@
 #include "transport/registry/smem_charge.hpp"
 #include "transport/subscription/subscription_block.hpp"
 #include "transport/subscription/subscription_impl.hpp"
-#include "transport/transfer/topic_transfer.hpp"
-#include "transport/transfer/transfer_pipes.hpp"
+#include "transport/transfer/transfer.hpp"
 
 namespace manycore {
 namespace {
@@ -204,7 +203,7 @@ void Process::Impl::count_contexts(int change) noexcept {
 void Process::Impl::require_movers() { ensure_receive_thread(*registry, placement.cluster); }
 
 uint32_t Process::Impl::publish_endpoint(const EndpointSpec & spec, EndpointKind kind) {
-  if (transfer_of(registry->find_topic(spec.topic), spec, kind) != Transfer::dsm) {
+  if (transfer::kind_of(registry->find_topic(spec.topic), spec, kind) != Transfer::dsm) {
     require_movers();
   }
   registry->clusters().at(placement.cluster).back_ahead();

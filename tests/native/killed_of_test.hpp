@@ -112,7 +112,7 @@ struct Fixture {
 
   /// A sum that changes with each store to what these endpoints have of their matches.
   uint64_t matches() {
-    uint64_t sum = readers_of_landing();
+    uint64_t sum = has_landing() ? 1 : 0;
     const auto add_publisher = [&](const Publisher & each) {
       sum += inspection.readers_of(each) + each.matched().current;
     };
@@ -137,19 +137,12 @@ struct Fixture {
     return sum;
   }
 
-  /// Subscriptions in cluster 2 of the publisher that is transferred.
-  uint64_t readers_of_landing() {
-    const LandingTable * const table = landings();
-    return table == nullptr ? 0 : table->readers[1].load();
-  }
+  /// True if the publisher that is transferred has a landing in cluster 2.
   bool has_landing() {
-    const LandingTable * const table = landings();
+    const Cluster & own = inspection.registry().clusters().at(1);
+    const LandingTable * const table =
+      resident ? landing_table(own, inspection.header_of(*publishers.front())) : nullptr;
     return table != nullptr && table->landings[1].load() != 0;
-  }
-  const LandingTable * landings() {
-    Clusters & clusters = inspection.registry().clusters();
-    return resident ? landing_table(clusters.at(1), inspection.header_of(*publishers.front()))
-                    : nullptr;
   }
 
   /// True while a match of the publisher is undone by half.

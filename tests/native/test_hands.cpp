@@ -45,9 +45,8 @@ const Role subscribes_deep("subscribes_deep", [](Lines &, const Arguments & argu
 
 bool is_any_in_hand(Registry & registry) {
   const auto & hands = registry.header().hands;
-  return std::any_of(std::begin(hands), std::end(hands), [](const Hand & hand) {
-    return hand.block.load() != 0;
-  });
+  return std::any_of(
+    std::begin(hands), std::end(hands), [](const Hand & hand) { return hand.block.load() != 0; });
 }
 
 Profile profile_of(uint64_t smem_bytes) {
@@ -174,8 +173,7 @@ TEST_CASE("a hand that its process could not empty is emptied by its next use") 
     std::optional<Registry::Lock> lock;
     BlockInHand hand(registry, Registry::Lock::no_wait_ns);
     lock.emplace(registry);
-    hand.take_up(
-      SegmentRef::make(1, registry.clusters().at(1).allocate(deep_bytes)), deep_bytes);
+    hand.take_up(SegmentRef::make(1, registry.clusters().at(1).allocate(deep_bytes)), deep_bytes);
     std::async(std::launch::async, [gone = std::move(hand)] {}).get();  // while the lock is held
   }
   CHECK(is_any_in_hand(registry));
@@ -275,6 +273,24 @@ TEST_CASE("a landing is freed with its last subscription; one that comes later g
     CHECK(take_next(*f.process, *subscription).number == static_cast<uint64_t>(i));
   }
   f.inspection.wait_until_swept();  // by the reaper, where publisher or mover was in its phase
+  CHECK(f.inspection.used_bytes(2) == used);
+}
+
+TEST_CASE("a landing stays while any subscription of its cluster is left") {
+  FromAfar f;
+  const uint64_t used = f.inspection.used_bytes(2);
+  auto first = f.subscription();
+  const uint64_t used_by_first = f.inspection.used_bytes(2) - used;
+  REQUIRE(used_by_first > dsm_bytes);
+  auto second = f.subscription();
+  CHECK(f.inspection.used_bytes(2) - used < dsm_bytes + used_by_first);
+  first.reset();
+  f.publisher.tell("publish 1 1 1000");
+  CHECK(take_next(*f.process, *second).number == 1);
+  f.inspection.wait_until_swept();
+  CHECK(f.inspection.used_bytes(2) - used == used_by_first);
+  second.reset();
+  f.inspection.wait_until_swept();
   CHECK(f.inspection.used_bytes(2) == used);
 }
 

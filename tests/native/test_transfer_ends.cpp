@@ -32,27 +32,7 @@ std::future<Refusal> publish_synchronously(Fixture & f, uint64_t number) {
   return refusal;
 }
 
-LandingTable & table_of(Registry & registry, uint32_t publisher) {
-  const Cluster & own = registry.clusters().at(1);
-  const EndpointEntry & entry = registry.endpoints()[publisher];
-  return *landing_table(own, *own.find<TopicDsmHeader>(entry.block.offset()));
-}
-
 }  // namespace
-
-TEST_CASE("the readers of each cluster are counted anew when the owner of the lock has died") {
-  Fixture f(by(Transfer::async));
-  Registry & registry = f.inspection().registry();
-  LandingTable & table = table_of(registry, f.inspection().slot_of(f.publisher->gid()));
-  CHECK(table.readers[1].load() == 1);
-  table.readers[1].store(7);
-  registry.header().needs_repair = 1;
-  { const Registry::Lock lock(registry); }
-  CHECK(table.readers[1].load() == 1);
-  f.subscriber->tell("close");
-  CHECK(table.readers[1].load() == 0);
-  wait_until("the landing is free", [&] { return f.inspection().used_bytes(2) == f.used_before; });
-}
 
 TEST_CASE("the last subscription leaves while a synchronous message is under way: no error") {
   Fixture f(by(Transfer::message, 0, true));

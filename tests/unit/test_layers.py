@@ -34,6 +34,9 @@ FOLDERS = {
     ],
     "ndt": ["common", "map", "kernel", "optimisation", "matching"],
 }
+# Folders that others see through one header, and those that see all of it; what they keep to
+# themselves is a word in no other file, but for the layout of memory.
+DOORS = {"transfer": ("transport/transfer/transfer.hpp", {"movers"}, "landing")}
 SEES_ROS = {"rmw", "bench"}
 ROS_HEADER = re.compile(r"(rmw|rcl|rcutils|rcpputils|rosidl_\w+|fastcdr|\w+_msgs)/")
 # System calls for mapping, pinning and futexes are wrapped in one place.
@@ -85,6 +88,24 @@ def test_native_code_includes_downwards_only() -> None:
         for path in native_files()
         for header in INCLUDE.findall(path.read_text())
         if not allowed(path, header)
+    ]
+    assert wrong == []
+
+
+@pytest.mark.parametrize("folder", DOORS)
+def test_a_folder_is_seen_through_its_door(folder: str) -> None:
+    door, insiders, secret = DOORS[folder]
+    outside = [
+        path
+        for path in (NATIVE / "transport").rglob("*.?pp")
+        if path.parent.name not in {folder, "layout"} | insiders
+    ]
+    assert outside
+    wrong = [
+        f"{path.relative_to(NATIVE)}: {line}"
+        for path in outside
+        for line in path.read_text().splitlines()
+        if secret in line.lower() or (f"transport/{folder}/" in line and door not in line)
     ]
     assert wrong == []
 

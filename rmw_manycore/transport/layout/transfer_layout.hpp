@@ -36,10 +36,8 @@ struct LandingTable {
   /// The landing whose last subscription has gone, until no thread can follow a reference to it.
   /// Where both are set they are one: a process died between two stores.
   std::atomic<uint64_t> retired[max_clusters];
-  /// Active entries of the reader table whose subscriptions are in that cluster (derived).
-  std::atomic<uint32_t> readers[max_clusters];
 };
-static_assert(sizeof(LandingTable) == 1280);
+static_assert(sizeof(LandingTable) == 1024);
 
 /// Where the records of one publisher arrive in one receiving cluster: a mirror of the data of its
 /// topic DSM in that cluster's SMEM. Header, one mark per descriptor, data; a record lies at the

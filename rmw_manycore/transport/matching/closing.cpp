@@ -6,7 +6,7 @@
 #include "transport/qos/liveliness.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
-#include "transport/transfer/landings.hpp"
+#include "transport/transfer/transfer.hpp"
 
 namespace manycore::closing {
 namespace {
@@ -77,7 +77,7 @@ void close_publisher(
   if (cluster == nullptr || dsm == nullptr) {
     return;
   }
-  landings::close_all(registry.clusters(), *cluster, *dsm);
+  transfer::end(registry.clusters(), *cluster, *dsm);
   if (died) {
     dsm->phase.store(0, std::memory_order_seq_cst);  // a dead process follows no references
   }

@@ -4,17 +4,23 @@
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
 #include "transport/topic_dsm/waiting_publisher.hpp"
-#include "transport/transfer/landings.hpp"
+#include "transport/transfer/transfer.hpp"
 
 namespace manycore {
 
-void remove_reader(const Cluster & cluster, TopicDsmHeader & dsm, ReaderEntry & reader) noexcept {
-  if (reader.active.load() != 0) {  // else its match is half made, and not counted
+namespace {
+
+bool has_reader_in(uint32_t receiver, const Cluster & cluster, TopicDsmHeader & dsm) {
+  bool found = false;
+  visit_reader_table(cluster, dsm, [&](const ReaderEntry & reader, uint32_t) {
     const SegmentRef subscription{reader.subscription.load()};
-    landings::discount_reader(cluster, dsm, subscription.cluster());
-  }
-  free_reader_entry(cluster, dsm, reader);
+    found = reader.active.load() != 0 && subscription.cluster() == receiver;
+    return found;
+  });
+  return found;
 }
+
+}  // namespace
 
 void detach_reader(Registry & registry, SourceEntry & source, uint32_t receiver) {
   TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
@@ -26,11 +32,12 @@ void detach_reader(Registry & registry, SourceEntry & source, uint32_t receiver)
   // Else the entry belongs to another source by now, or was not filled in.
   if (
     reader != nullptr && registry.map<SourceEntry>(SegmentRef{reader->source.load()}) == &source) {
-    remove_reader(cluster, *dsm, *reader);
+    free_reader_entry(cluster, *dsm, *reader);
     dsm->match_generation.fetch_add(1, std::memory_order_seq_cst);
     notify_waiting_publisher(*dsm);  // it need not wait for this reader any more
   }
-  landings::retire_unread(cluster, *dsm, receiver);
+  transfer::retire_unless(
+    cluster, *dsm, receiver, [&] { return has_reader_in(receiver, cluster, *dsm); });
 }
 
 }  // namespace manycore

@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <optional>
 
-#include "transport/matching/detaching.hpp"
 #include "transport/matching/orphans.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/topic_dsm/generation.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
-#include "transport/transfer/landing.hpp"
-#include "transport/transfer/landings.hpp"
-#include "transport/transfer/lost_movers.hpp"
+#include "transport/transfer/transfer.hpp"
 
 namespace manycore::freeing {
 namespace {
@@ -53,7 +50,7 @@ Progress revoke(
   SourceEntry & source = reader.source;
   if (source.state.load() == SourceState::active) {
     if (
-      untaken.of(reader) != 0 && lost_movers::can_arrive(
+      untaken.of(reader) != 0 && transfer::can_arrive(
                                    registry, reader.cluster, reader.dsm, reader.subscription,
                                    reader.endpoint.cluster, source)) {
       return Progress::kept;
@@ -67,7 +64,7 @@ Progress revoke(
   orphans::count_undelivered(registry, reader);
   // Remove the reader before the source entry can be reused: if this process dies in between, the
   // next sweep must not mistake a new match for this one.
-  remove_reader(reader.cluster, reader.dsm, entry);
+  free_reader_entry(reader.cluster, reader.dsm, entry);
   SubscriptionHeader & subscription = reader.subscription;
   subscription.free_source_from = std::min(subscription.free_source_from, reader.source_index);
   source.state.store(SourceState::free, std::memory_order_release);
@@ -110,18 +107,6 @@ bool take_up_generations(const Cluster & cluster, TopicDsmHeader & dsm, BlockInH
   return true;
 }
 
-/// Before the generations, which say how large landings are.
-bool take_up_landings(
-  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, BlockInHand & hand) {
-  while (const Cluster * const receiver = landings::retire_next(registry, cluster, dsm)) {
-    landings::take_up_retired(cluster, dsm, *receiver, hand);
-    if (!hand.is_empty()) {
-      return false;
-    }
-  }
-  return true;
-}
-
 /// The last block, so no repairer follows the reference in the entry once the block is freed.
 Progress take_up_head(EndpointEntry & entry, uint64_t bytes, BlockInHand & hand) {
   hand.take_up(entry.block, bytes);
@@ -141,14 +126,15 @@ bool publisher_is_out(Registry & registry, const SourceEntry & source) {
   return phase % 2 == 0 || phase != source.accounted.load();
 }
 
-/// Takes up the landing of a publisher that the subscription was the last to read in its cluster.
-void take_up_landing_of(
+/// Takes up the room for a publisher's records in the subscription's cluster if the subscription
+/// was the last to read them there.
+void take_up_room_of(
   Registry & registry, const Cluster & cluster, const SourceEntry & source, BlockInHand & hand) {
   TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
   const Cluster * const publisher =
     dsm == nullptr ? nullptr : registry.map_cluster(SegmentRef{source.topic_dsm.load()}.cluster());
-  if (publisher != nullptr && landings::has_retired(*publisher, *dsm, cluster.id())) {
-    landings::take_up_retired(*publisher, *dsm, cluster, hand);
+  if (publisher != nullptr) {
+    transfer::take_up_retired(*publisher, *dsm, cluster, hand);
   }
 }
 
@@ -165,7 +151,7 @@ Progress see_publishers_out(
       progress = Progress::in_use;
       return false;
     }
-    take_up_landing_of(registry, cluster, source, hand);
+    take_up_room_of(registry, cluster, source, hand);
     source.state.store(SourceState::free);
     if (!hand.is_empty()) {
       progress = Progress::some_left;
@@ -197,7 +183,7 @@ Progress free_publisher(Registry & registry, uint32_t endpoint, BlockInHand & ha
     registry.unlink_endpoint(endpoint, Registry::Chain::orphans);
     entry.slot.state.store(SlotState::unreachable);
   }
-  const bool is_head_left = take_up_landings(registry, *cluster, *dsm, hand) &&
+  const bool is_head_left = transfer::take_up_all(registry, *cluster, *dsm, hand) &&
                             take_up_generations(*cluster, *dsm, hand) &&
                             take_up_table(*cluster, further_readers(*cluster, *dsm), hand);
   return is_head_left ? take_up_head(entry, header_bytes(*dsm), hand) : Progress::some_left;

@@ -10,8 +10,7 @@
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/registry/snapshot.hpp"
 #include "transport/topic_dsm/last_published.hpp"
-#include "transport/transfer/landing.hpp"
-#include "transport/transfer/landings.hpp"
+#include "transport/transfer/transfer.hpp"
 
 namespace manycore::matching {
 namespace {
@@ -75,16 +74,15 @@ std::optional<NeededBlock> join(Registry & registry, const Pair & pair, BlockInH
   }
   SourceEntry & source = *free_source.entry;
   ReaderEntry & reader = *free_reader;
-  if (
-    const auto needed =
-      landings::find_place(registry, pair.publisher, *dsm, subscription_cluster, hand)) {
-    return needed;
+  transfer::MatchRoom room(registry, pair.publisher, *dsm, subscription_cluster, hand);
+  if (room.needed()) {
+    return room.needed();
   }
   const uint64_t taken = begin_source(pair, *dsm, source);
   source.reader.store(publisher_cluster.ref_of(&reader).word, std::memory_order_relaxed);
   source.state.store(SourceState::joining, std::memory_order_release);
-  // From here on the source leads to the landing, should this process die.
-  landings::attach(publisher_cluster, *dsm, subscription_cluster, hand);
+  // From here on the source leads to the room, should this process die.
+  room.attach();
 
   // Release: a receive thread may still be reading the entry's former reader.
   reader.endpoint.store(pair.subscription_slot, std::memory_order_release);
@@ -93,7 +91,6 @@ std::optional<NeededBlock> join(Registry & registry, const Pair & pair, BlockInH
   reader.source_index.store(free_source.index, std::memory_order_release);
   reader.source_incarnation.store(source.incarnation.load(), std::memory_order_release);
   reader.active.store(1, std::memory_order_release);
-  landings::count_reader(publisher_cluster, *dsm, subscription_cluster.id());
   // From here on the publisher finds this reader: it checks `match_generation` after storing `last`
   // (seq_cst). A claim before this point would be invisible to the publisher, which could recycle
   // the record.

@@ -10,8 +10,7 @@
 #include "transport/registry/registry.hpp"
 #include "transport/registry/snapshot.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
-#include "transport/transfer/landing.hpp"
-#include "transport/transfer/landings.hpp"
+#include "transport/transfer/transfer.hpp"
 
 namespace manycore {
 namespace matches {
@@ -31,21 +30,6 @@ void for_each_endpoint(Registry & registry, EndpointKind kind, Visit visit) {
       visit(entry, *cluster, *header);
     }
   }
-}
-
-/// Before half matches are undone: the last reader in a cluster retires the landing there.
-void count_readers_of_landings(Registry & registry) {
-  for_each_endpoint<TopicDsmHeader>(
-    registry, EndpointKind::publisher,
-    [](EndpointEntry & entry, const Cluster & cluster, TopicDsmHeader & dsm) {
-      entry.matched_current.store(0);
-      if (dsm.transfer != static_cast<uint8_t>(Transfer::dsm)) {
-        landings::forget_readers(cluster, dsm);
-        for_each_reader(cluster, dsm, [&](const ReaderEntry & reader) {
-          landings::count_reader(cluster, dsm, SegmentRef{reader.subscription.load()}.cluster());
-        });
-      }
-    });
 }
 
 /// Undoes a match that is made by half. Not `free`: the publisher may have seen the reader, so its
@@ -78,7 +62,11 @@ void count_sources(
 
 /// Undoes the match that was being made, and counts all matches anew.
 void repair(Registry & registry) {
-  count_readers_of_landings(registry);
+  for_each_endpoint<TopicDsmHeader>(
+    registry, EndpointKind::publisher,
+    [](EndpointEntry & entry, const Cluster &, TopicDsmHeader &) {
+      entry.matched_current.store(0);
+    });
   for_each_endpoint<SubscriptionHeader>(
     registry, EndpointKind::subscription,
     [&](EndpointEntry & entry, const Cluster & cluster, SubscriptionHeader & subscription) {
@@ -103,7 +91,7 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
       return;
     }
     mark(entry.block.offset(), header_bytes(*dsm));
-    landings::mark_all(clusters_, *cluster, *dsm);
+    transfer::mark(clusters_, *cluster, *dsm);
     for (GenerationEntry & generation : dsm->generations) {
       if (generation.offset.load() != 0) {
         mark(generation.offset.load(), generation.extent_bytes());

@@ -63,16 +63,11 @@ void request_resync(const Cluster & cluster, const Readers & readers) noexcept {
   cluster.wake_resyncing();
 }
 
-/// False if the readers in that cluster have to look for themselves.
-bool send(const EmcosMessage & message, const Cluster & cluster, TransferSender * sender) noexcept {
-  return sender == nullptr ? cluster.send(message) : sender->hand_over(message, cluster);
-}
-
 }  // namespace
 
 void announce(
   Registry & registry, const Cluster & own, const ReaderList & list,
-  const Announcement & announcement, TransferSender * sender) noexcept {
+  const Announcement & announcement, TransferSender & sender) noexcept {
   const bool is_targeted = announcement.target != nullptr;
   const Readers readers = is_targeted ? list.with_gid(*announcement.target) : list.all();
   uint64_t others = push_to_own_cluster(registry.tracer(), own, readers, announcement);
@@ -92,7 +87,7 @@ void announce(
     const uint32_t id = static_cast<uint32_t>(__builtin_ctzll(others)) + 1;
     Cluster * const cluster = registry.clusters().find(id);
     registry.tracer().note(TraceKind::send, announcement.endpoint, announcement.number, id);
-    if (cluster != nullptr && !send(message, *cluster, sender)) {
+    if (cluster != nullptr && !sender.hand_over(message, *cluster)) {
       request_resync(*cluster, readers);
     }
   }

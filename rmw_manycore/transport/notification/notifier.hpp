@@ -2,7 +2,7 @@
 #pragma once
 
 #include "transport/topic_dsm/reader_list.hpp"
-#include "transport/transfer/transfer_sender.hpp"
+#include "transport/transfer/transfer.hpp"
 
 namespace manycore {
 
@@ -19,10 +19,10 @@ struct Announcement {
 
 /// Step 1 of ROS-lite2 Fig. 4, last part: pushes a hint to each reader of the `own` cluster and
 /// wakes its process; sends one eMCOS message to each other cluster with a reader. Never blocks: if
-/// a pipe is full, the readers behind it are set to resync. `sender` hands records of a transferred
-/// topic over, and blocks at most as long as it says; nullptr for others.
+/// a pipe is full, the readers behind it are set to resync. Only a `sender` of synchronous records
+/// blocks, at most as long as it says.
 void announce(
   Registry & registry, const Cluster & own, const ReaderList & list,
-  const Announcement & announcement, TransferSender * sender) noexcept;
+  const Announcement & announcement, TransferSender & sender) noexcept;
 
 }  // namespace manycore

@@ -58,7 +58,7 @@ uint64_t Publisher::publish(
     {impl.entry.block, impl.slot, impl.entry.slot.incarnation, number,
      targeted ? &correlation.client : nullptr, &impl.registry.processes()[impl.entry.process].wake,
      spared},
-    impl.sender.get());
+    impl.sender);
   if (revived) {
     impl.notify_readers_of_event();
   }
@@ -67,9 +67,7 @@ uint64_t Publisher::publish(
   counters.messages.store(sequence_number, std::memory_order_relaxed);
   counters.bytes.store(
     counters.bytes.load(std::memory_order_relaxed) + size_bytes, std::memory_order_relaxed);
-  if (impl.sender) {
-    impl.sender->require_received();
-  }
+  impl.sender.require_received();
   return sequence_number;
 }
 

@@ -8,7 +8,7 @@
 #include "transport/qos/manual_liveliness.hpp"
 #include "transport/registry/membership.hpp"
 #include "transport/topic_dsm/topic_dsm_writer.hpp"
-#include "transport/transfer/transfer_sender.hpp"
+#include "transport/transfer/transfer.hpp"
 
 namespace manycore {
 
@@ -22,7 +22,7 @@ struct Publisher::Impl {
     cluster(registry_.clusters().at(entry.cluster)),
     writer(registry_, cluster, entry),
     liveliness(entry.asserted_ns, entry.qos.liveliness_lease_ns),
-    sender(TransferSender::of(registry_, cluster, entry)) {
+    sender(registry_, cluster, entry) {
     deadline.reset();
   }
 
@@ -48,7 +48,7 @@ struct Publisher::Impl {
   uint64_t published = 0;
   DeadlineClock deadline;
   ManualLiveliness liveliness;
-  std::unique_ptr<TransferSender> sender;  ///< of a transferred topic
+  TransferSender sender;
 };
 
 }  // namespace manycore

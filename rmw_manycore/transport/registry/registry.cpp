@@ -37,7 +37,7 @@ SharedMemory open_registry(const PlatformPaths & paths) {
   return memory;
 }
 
-/// The landings of a transferred topic mirror its topic DSM, so its size must not change.
+/// A transferred topic has mirrors of its topic DSM in other clusters, so its size must not change.
 void require_fixed_size(const TopicConfiguration & topic) {
   if (topic.transfer.kind != Transfer::dsm && topic.dsm_size_bytes == 0) {
     throw Error(

@@ -47,7 +47,7 @@ std::optional<uint64_t> Source::published_number(uint64_t low_bits) noexcept {
   std::optional<uint64_t> number;
   entry_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
-    const uint64_t latest = last();  // load once: it increases concurrently
+    const uint64_t latest = arrived().last();  // load once: it increases concurrently
     number = Hint::full_number(low_bits, latest);
     if (*number > latest) {
       number.reset();
@@ -127,7 +127,7 @@ Source::ClaimResult Source::look_at(uint64_t number, View & view) noexcept {
   if (record.number.load(std::memory_order_seq_cst) != number) {
     return ClaimResult::gone;
   }
-  const uint8_t * const data = data_of(*generation, record, number);
+  const uint8_t * const data = arrived().find(*generation, record, number);
   if (data == nullptr) {
     return ClaimResult::gone;
   }
@@ -174,41 +174,19 @@ bool Source::skip(uint64_t number) noexcept {
   return is_over;
 }
 
-uint64_t Source::last() const noexcept {
-  if (is_transferred()) {
-    const Landing here = landing();
-    return here ? here.arrived() : no_record;
-  }
-  return dsm_->last.load(std::memory_order_seq_cst);
-}
-
-const uint8_t * Source::data_of(
-  const GenerationEntry & generation, const RecordDescriptor & record,
-  uint64_t number) const noexcept {
-  if (!is_transferred()) {
-    return cluster_->find<uint8_t>(record.offset, record.size_bytes);
-  }
-  const Landing here = landing();
-  const RecordPlace place{record.offset - generation.data_offset(), record.size_bytes};
-  return here && here.has(number) ? here.find(place) : nullptr;
-}
-
 /// Pins one record after the other, so a reader stopped in a scan costs one record, like any claim.
 /// The generation stays pinned throughout: each value of `reading` is a record in it, or
 /// every_record.
 void Source::scan(
-  const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept {
+  const GenerationEntry & generation, const transfer::Arrived & arrived, uint64_t last,
+  std::vector<Waiting> & out) noexcept {
   entry_->reading.store(every_record, std::memory_order_seq_cst);
   const bool open = generation.first.load(std::memory_order_seq_cst) != 0;
   const Descriptors descriptors = open ? descriptors_of(generation) : Descriptors{};
-  const bool must_arrive = is_transferred();
-  const Landing here = must_arrive ? landing() : Landing();
   for (uint64_t i = 0; i < descriptors.count; ++i) {
     RecordDescriptor & record = descriptors.begin[i];
     const uint64_t number = record.number.load(std::memory_order_relaxed);
-    if (
-      number <= noted_ || number > last || is_given_up(number) ||
-      (must_arrive && !(here && here.has(number)))) {
+    if (number <= noted_ || number > last || is_given_up(number) || !arrived.has(number)) {
       continue;
     }
     entry_->reading.store(number, std::memory_order_seq_cst);
@@ -224,9 +202,10 @@ void Source::list_waiting(std::vector<Waiting> & out) noexcept {
   entry_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
     // Most sources have no new record: a subscription resyncs for each publisher that joins.
-    if (const uint64_t last = this->last(); last > noted_) {
+    const transfer::Arrived arrived = this->arrived();
+    if (const uint64_t last = arrived.last(); last > noted_) {
       for (const GenerationEntry & generation : dsm_->generations) {
-        scan(generation, last, out);
+        scan(generation, arrived, last, out);
       }
       noted_ = last;
     }
@@ -252,24 +231,16 @@ uint64_t Source::account_for(uint64_t last_sequence) noexcept {
   return last_sequence - before;
 }
 
-/// Where records are transferred, some up to `published` may be on their way.
-bool Source::is_known(uint64_t published, uint64_t known) const noexcept {
-  if (!is_transferred()) {
-    return published <= known;
-  }
-  const Landing here = landing();
-  return here && here.is_settled(published, known);
-}
-
 Source::Settled Source::settle() noexcept {
   Settled settled = Settled::no;
   entry_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
     const LastPublished published = last_published(*dsm_);
     const std::optional<uint64_t> displaced = Displaced::read(entry_->displaced, incarnation_);
+    const transfer::Arrived arrived = this->arrived();
     const uint64_t known =
-      displaced ? std::max(noted_, Hint::full_number(*displaced, last())) : noted_;
-    if (published.exact && is_known(published.number, known)) {
+      displaced ? std::max(noted_, Hint::full_number(*displaced, arrived.last())) : noted_;
+    if (published.exact && arrived.is_settled(published.number, known)) {
       count_missing(published.sequence);
       const bool was_finished = is_finished();
       // Records counted as lost must not be found by a later scan.

@@ -7,7 +7,7 @@
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/registry/registry.hpp"
-#include "transport/transfer/landing.hpp"
+#include "transport/transfer/transfer.hpp"
 
 namespace manycore {
 
@@ -93,21 +93,8 @@ private:
     uint64_t count = 0;
   };
 
-  /// True if records reach this subscription in a landing. Requires a claim, as does landing().
-  bool is_transferred() const noexcept {
-    return dsm_->transfer != static_cast<uint8_t>(Transfer::dsm) && cluster_ != own_cluster_;
-  }
-  Landing landing() const noexcept {
-    return own_cluster_ == nullptr ? Landing() : Landing::of(*cluster_, *dsm_, *own_cluster_);
-  }
-  /// The bytes of a record; nullptr if they are out of bounds or have not arrived.
-  const uint8_t * data_of(
-    const GenerationEntry & generation, const RecordDescriptor & record,
-    uint64_t number) const noexcept;
-  /// Highest record number published, or, where transferred, arrived. Requires a claim.
-  uint64_t last() const noexcept;
-  /// True if no record up to `published` needs a look, given all up to `known` had one.
-  bool is_known(uint64_t published, uint64_t known) const noexcept;
+  /// Requires a claim.
+  transfer::Arrived arrived() const noexcept { return {*cluster_, *dsm_, own_cluster_}; }
   /// The open generation that holds `number`, or nullptr.
   const GenerationEntry * generation_of(uint64_t number) const noexcept;
   ClaimResult look_at(uint64_t number, View & view) noexcept;
@@ -116,7 +103,9 @@ private:
   bool is_expired(const RecordDescriptor & record) const noexcept;
   /// True if the source is active and of the same incarnation. Call after storing `reading`.
   bool may_look() const noexcept;
-  void scan(const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept;
+  void scan(
+    const GenerationEntry & generation, const transfer::Arrived & arrived, uint64_t last,
+    std::vector<Waiting> & out) noexcept;
   /// Counts messages up to this publication sequence number as lost, unless they are accounted for.
   void count_missing(uint64_t last_sequence) noexcept;
   /// Raises SourceEntry::accounted; returns by how much.

@@ -7,7 +7,7 @@
 #include "platform/error.hpp"
 #include "transport/queue/displaced.hpp"
 #include "transport/registry/odd_phase.hpp"
-#include "transport/transfer/landing.hpp"
+#include "transport/transfer/transfer.hpp"
 
 namespace manycore {
 namespace {

@@ -1,10 +1,9 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-#include "transport/transfer/lost_movers.hpp"
-
+// Part of transfer.hpp: sessions whose mover will not go on.
 #include "transport/registry/endpoint_blocks.hpp"
-#include "transport/transfer/landing.hpp"
+#include "transport/transfer/transfer.hpp"
 
-namespace manycore::lost_movers {
+namespace manycore::transfer {
 namespace {
 
 bool has_movers(Registry & registry, uint32_t cluster) {
@@ -43,6 +42,8 @@ bool has_arrived(
 
 }  // namespace
 
+/// No thread moves the records of a cluster's sessions once the last process of that cluster has
+/// gone.
 bool can_arrive(
   Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm,
   SubscriptionHeader & subscription, uint32_t receiver, const SourceEntry & source) {
@@ -61,4 +62,4 @@ bool can_arrive(
   return true;
 }
 
-}  // namespace manycore::lost_movers
+}  // namespace manycore::transfer

@@ -9,14 +9,18 @@
 
 namespace manycore {
 
-std::unique_ptr<TransferSender> TransferSender::of(
-  Registry & registry, Cluster & own, EndpointEntry & publisher) {
-  const TopicEntry * const topic = registry.find_topic(publisher.topic);
-  if (publisher.transfer == Transfer::dsm || topic == nullptr) {
-    return nullptr;
-  }
-  return std::make_unique<TransferSender>(registry, own, publisher, topic->transfer);
+namespace {
+
+TransferSettings settings_of(const Registry & registry, const EndpointEntry & publisher) {
+  const TopicEntry * const topic =
+    publisher.transfer == Transfer::dsm ? nullptr : registry.find_topic(publisher.topic);
+  return topic == nullptr ? TransferSettings{} : topic->transfer;
 }
+
+}  // namespace
+
+TransferSender::TransferSender(Registry & registry, Cluster & own, EndpointEntry & publisher)
+: TransferSender(registry, own, publisher, settings_of(registry, publisher)) {}
 
 TransferSender::TransferSender(
   Registry & registry, Cluster & own, EndpointEntry & publisher, const TransferSettings & settings)
@@ -83,7 +87,7 @@ bool TransferSender::is_given_up(const Landing & landing) const noexcept {
   return landing.header().done.load(std::memory_order_seq_cst) >= number_ && !landing.has(number_);
 }
 
-bool TransferSender::hand_over(
+bool TransferSender::transfer(
   const EmcosMessage & announcement, const Cluster & receiver) noexcept {
   const Landing landing = Landing::of(own_, dsm_, receiver);
   if (!landing) {
@@ -118,11 +122,8 @@ void TransferSender::note_late(const Late & late) noexcept {
   }
 }
 
-void TransferSender::require_received() {
+void TransferSender::throw_late() {
   const Late late = std::exchange(late_, {});
-  if (late.cluster == 0) {
-    return;
-  }
   const std::string time = std::to_string(max_blocking_ns / 1'000'000) + " ms";
   const std::string advice =
     late.may_arrive

@@ -8,28 +8,31 @@
 
 namespace manycore {
 
-/// Hands the records of one publisher over to clusters that have subscriptions. One thread at a
-/// time, in the publisher's phase (see Writing). See docs/design/transfers.md.
+/// Hands the records of one publisher over to clusters that have subscriptions; where the topic is
+/// not transferred, the announcement is all that is sent. One thread at a time, in the publisher's
+/// phase (see Writing). See docs/design/transfers.md.
 class TransferSender {
 public:
   /// What a synchronous publish waits for at most, in all.
   static constexpr int64_t max_blocking_ns = 100'000'000;
 
-  /// Nullptr for a topic that is not transferred. Throws Error{system}.
-  static std::unique_ptr<TransferSender> of(
-    Registry & registry, Cluster & own, EndpointEntry & publisher);
-  TransferSender(
-    Registry & registry, Cluster & own, EndpointEntry & publisher,
-    const TransferSettings & settings);
+  /// Throws Error{system}.
+  TransferSender(Registry & registry, Cluster & own, EndpointEntry & publisher);
 
   /// False when the subscriptions there have to be told to look for themselves: the record is there
   /// without an announcement, or given up already, or was dropped, and no record is under way after
   /// which they look.
-  bool hand_over(const EmcosMessage & announcement, const Cluster & receiver) noexcept;
+  bool hand_over(const EmcosMessage & announcement, const Cluster & receiver) noexcept {
+    return carrier_ == nullptr ? receiver.send(announcement) : transfer(announcement, receiver);
+  }
 
   /// Throws Error{timeout} when the last record was to be received in time and was not: it says
   /// whether the record may still arrive.
-  void require_received();
+  void require_received() {
+    if (late_.cluster != 0) {
+      throw_late();
+    }
+  }
 
 private:
   /// A cluster that has not confirmed the record in time.
@@ -38,6 +41,10 @@ private:
     bool may_arrive = false;
   };
 
+  TransferSender(
+    Registry & registry, Cluster & own, EndpointEntry & publisher,
+    const TransferSettings & settings);
+  bool transfer(const EmcosMessage & announcement, const Cluster & receiver) noexcept;
   void begin(uint64_t number) noexcept;
   Carried carry(
     const EmcosMessage & announcement, const Landing & landing, const Cluster & receiver) noexcept;
@@ -46,6 +53,7 @@ private:
     LandingHeader & landing, const std::atomic<uint64_t> & successors, uint64_t before) noexcept;
   void note_dropped(uint32_t cluster) noexcept;
   void note_late(const Late & late) noexcept;
+  [[noreturn]] void throw_late();
   bool is_told_of_drop(const LandingHeader & landing, uint32_t cluster) noexcept;
   /// True when the mover gave it up before `closed` was stored: readers looked too early.
   bool is_given_up(const Landing & landing) const noexcept;
@@ -54,7 +62,7 @@ private:
   Cluster & own_;
   EndpointEntry & publisher_;
   TopicDsmHeader & dsm_;
-  std::unique_ptr<Carrier> carrier_;
+  std::unique_ptr<Carrier> carrier_;  ///< nullptr: the topic is not transferred
   const bool is_synchronous_;
   uint64_t number_ = 0;    ///< of the record that is being handed over, or was last
   int64_t until_ns_ = 0;   ///< CLOCK_MONOTONIC, of that record

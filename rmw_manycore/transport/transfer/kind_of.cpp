@@ -1,11 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-#include "transport/transfer/topic_transfer.hpp"
-
+// Part of transfer.hpp: what is configured.
 #include "platform/error.hpp"
+#include "transport/transfer/transfer.hpp"
 
-namespace manycore {
+namespace manycore::transfer {
 
-Transfer transfer_of(const TopicEntry * configured, const EndpointSpec & spec, EndpointKind kind) {
+Transfer kind_of(const TopicEntry * configured, const EndpointSpec & spec, EndpointKind kind) {
   if (configured == nullptr || spec.role != EndpointRole::topic) {
     return Transfer::dsm;
   }
@@ -23,4 +23,4 @@ Transfer transfer_of(const TopicEntry * configured, const EndpointSpec & spec, E
   return transfer;
 }
 
-}  // namespace manycore
+}  // namespace manycore::transfer

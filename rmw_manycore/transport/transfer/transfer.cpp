@@ -1,0 +1,157 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/transfer/transfer.hpp"
+
+#include "transport/transfer/sessions.hpp"
+
+namespace manycore::transfer {
+namespace {
+
+/// Nothing that was published before is on its way there.
+void begin(LandingHeader & landing, uint64_t last) noexcept {
+  for (std::atomic<uint64_t> * word :
+       {&landing.arrived, &landing.done, &landing.handed, &landing.closed}) {
+    word->store(last, std::memory_order_seq_cst);
+  }
+}
+
+void name_publisher(LandingHeader & landing, const TopicDsmHeader & dsm) noexcept {
+  landing.endpoint.store(dsm.endpoint.load());
+  landing.incarnation.store(dsm.incarnation.load());
+  landing.magic.store(landing_magic, std::memory_order_release);
+}
+
+LandingHeader * retired_landing(
+  const LandingTable & table, const TopicDsmHeader & dsm, const Cluster & receiver) noexcept {
+  const uint64_t offset = table.retired[receiver.id() - 1].load();
+  return offset != 0 ? receiver.find<LandingHeader>(offset, landing_bytes(dsm)) : nullptr;
+}
+
+NeededBlock block_of_landing(const TopicDsmHeader & dsm, const Cluster & receiver) noexcept {
+  const uint64_t bytes = landing_bytes(dsm);
+  const uint64_t data_bytes = dsm.generations[0].data_bytes.load(std::memory_order_relaxed);
+  return {receiver.id(), bytes, bytes - data_bytes, true};
+}
+
+void retire(LandingTable & table, uint32_t receiver) noexcept {
+  if (table.landings[receiver - 1].load() != 0) {
+    table.retired[receiver - 1].store(table.landings[receiver - 1].load());
+    // Dekker with publisher and movers: each stores its phase before it looks for the landing.
+    table.landings[receiver - 1].store(0, std::memory_order_seq_cst);
+  }
+}
+
+bool has_landing(const LandingTable & table, uint32_t receiver) noexcept {
+  return table.landings[receiver - 1].load() != 0 || table.retired[receiver - 1].load() != 0;
+}
+
+void take_up(
+  LandingTable & table, const TopicDsmHeader & dsm, const Cluster & receiver,
+  BlockInHand & hand) noexcept {
+  std::atomic<uint64_t> & retired = table.retired[receiver.id() - 1];
+  hand.take_up(SegmentRef::make(receiver.id(), retired.load()), landing_bytes(dsm));
+  retired.store(0);
+}
+
+}  // namespace
+
+MatchRoom::MatchRoom(
+  Registry & registry, const EndpointEntry & publisher, TopicDsmHeader & dsm,
+  const Cluster & receiver, BlockInHand * hand)
+: dsm_(dsm),
+  receiver_(receiver),
+  hand_(hand),
+  table_(landing_table(registry.clusters().at(publisher.cluster), dsm)) {
+  const bool is_missing = table_ != nullptr && receiver.id() != publisher.cluster &&
+                          table_->landings[receiver.id() - 1].load() == 0;
+  if (!is_missing) {
+    table_ = nullptr;
+  } else if (publisher.transfer == Transfer::session) {
+    require_free_session(registry, publisher, receiver.id());
+  }
+}
+
+std::optional<NeededBlock> MatchRoom::needed() const noexcept {
+  if (table_ == nullptr || retired_landing(*table_, dsm_, receiver_) != nullptr) {
+    return std::nullopt;
+  }
+  const NeededBlock needed = block_of_landing(dsm_, receiver_);
+  return hand_ != nullptr && hand_->has(needed) ? std::nullopt : std::optional(needed);
+}
+
+void MatchRoom::attach() noexcept {
+  if (table_ == nullptr) {
+    return;
+  }
+  LandingHeader * landing = retired_landing(*table_, dsm_, receiver_);
+  if (landing == nullptr) {
+    landing = receiver_.find<LandingHeader>(hand_->take().offset(), landing_bytes(dsm_));
+    if (landing == nullptr) {
+      return;  // damaged
+    }
+    name_publisher(*landing, dsm_);
+  }
+  begin(*landing, dsm_.last.load(std::memory_order_seq_cst));
+  table_->landings[receiver_.id() - 1].store(
+    receiver_.ref_of(landing).offset(), std::memory_order_seq_cst);
+  table_->retired[receiver_.id() - 1].store(0);
+}
+
+void retire(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept {
+  LandingTable * const table = landing_table(cluster, dsm);
+  if (table != nullptr && receiver - 1 < max_clusters) {
+    retire(*table, receiver);
+  }
+}
+
+void take_up_retired(
+  const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver,
+  BlockInHand & hand) noexcept {
+  LandingTable * const table = landing_table(cluster, dsm);
+  if (
+    table != nullptr && table->retired[receiver.id() - 1].load() != 0 &&
+    table->landings[receiver.id() - 1].load() == 0) {
+    take_up(*table, dsm, receiver, hand);
+  }
+}
+
+bool take_up_all(
+  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, BlockInHand & hand) {
+  LandingTable * const table = landing_table(cluster, dsm);
+  for (uint32_t id = 1; table != nullptr && id <= max_clusters; ++id) {
+    const Cluster * const receiver = has_landing(*table, id) ? registry.map_cluster(id) : nullptr;
+    if (receiver != nullptr) {
+      retire(*table, id);
+      take_up(*table, dsm, *receiver, hand);
+      if (!hand.is_empty()) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+void mark(Clusters & clusters, const Cluster & cluster, TopicDsmHeader & dsm) noexcept {
+  LandingTable * const table = landing_table(cluster, dsm);
+  for (uint32_t id = 1; table != nullptr && id <= max_clusters; ++id) {
+    const uint64_t used = table->landings[id - 1].load();
+    const uint64_t offset = used != 0 ? used : table->retired[id - 1].load();
+    Cluster * const receiver = offset == 0 ? nullptr : clusters.find(id);
+    if (receiver != nullptr) {
+      receiver->mark_allocated(offset, landing_bytes(dsm));
+    }
+  }
+}
+
+void end(Clusters & clusters, const Cluster & cluster, TopicDsmHeader & dsm) noexcept {
+  LandingTable * const table = landing_table(cluster, dsm);
+  for (uint32_t id = 1; table != nullptr && id <= max_clusters; ++id) {
+    const Cluster * const receiver =
+      table->landings[id - 1].load() == 0 ? nullptr : clusters.find(id);
+    const Landing landing = receiver == nullptr ? Landing() : Landing::of(cluster, dsm, *receiver);
+    if (landing) {
+      landing.header().closed.store(dsm.last.load(), std::memory_order_seq_cst);
+    }
+  }
+}
+
+}  // namespace manycore::transfer
