@@ -9,16 +9,20 @@
  * published number; no reader wants the records of old generations any more, so the publisher
  * closes them in any order. It waits here for a pinned generation instead of retrying at its next
  * message. Reading freed memory would allocate a page for it again, or end the reader if /dev/shm
- * is full.
+ * is full. A reader may stop for ever while it looks at the header only: that keeps no generation,
+ * so the publisher comes to its end.
  *
  * BUG 1: first cleared after the load of reading
  * BUG 2: no fence between first and the load of reading (publisher)
  * BUG 3: no fence between reading and the load of first (reader)
  * BUG 4: publisher checks for claims on the generation's own records only
- * BUG 5: publisher does not see a reader that scans
+ * BUG 5: a look at the header keeps all generations
  * BUG 6: reader list refreshed before first is cleared, not after
  * BUG 7: freed before the load of reading
  * BUG 8: reader does not check again the entry that it chose
+ * BUG 9: a scan does not check again the generation that it pins
+ * BUG 10: no fence between reading and the second load of first (scan)
+ * BUG 11: a scan pins the header only
  */
 #define FIRST(e) (e)      /* of the generation entries */
 #define READING 3
@@ -32,7 +36,7 @@
 
 #define unused 0
 #define no_record 0
-#define every_record 255
+#define header_only 255
 
 #include "tso.pml"
 
@@ -83,19 +87,37 @@ inline claim() {
 }
 
 inline scan_generation(e) {
-  store_seq_cst(READER, READING, every_record);
   best = load(READER, FIRST(e));
   if
   :: best != unused ->
-     touch(e, best);
+#if BUG == 10
+     store_release(READER, READING, best);
+#elif BUG == 11
+     store_seq_cst(READER, READING, header_only);
+#else
      store_seq_cst(READER, READING, best);
-     touch(e, best)
+#endif
+     if
+#if BUG == 9
+     :: true ->
+#else
+     :: load(READER, FIRST(e)) == best ->
+#endif
+        touch(e, best);
+        touch(e, best)
+     :: else
+     fi
   :: else
   fi;
   best = 0
 }
 
+inline look_at_header() {
+  store_seq_cst(READER, READING, header_only)
+}
+
 inline scan() {
+  look_at_header();
   scan_generation(0);
   scan_generation(1);
   scan_generation(2);
@@ -117,6 +139,7 @@ proctype Reader() {
      claim();
      n = 0
   :: claims < 2 -> claims++; scan()
+  :: look_at_header(); break   /* and stops there */
   :: break
   od
 }
@@ -139,12 +162,13 @@ inline open(e, n) {
 #define is_in(r, n, current) ((r) >= (n) && (r) < (current))
 #endif
 #if BUG == 5
-#define scans(r) false
+#define pins_all(r) ((r) == header_only)
 #else
-#define scans(r) ((r) == every_record)
+#define pins_all(r) false
 #endif
 #define is_pinned(n, current) \
-  (knows_reader && (is_in(load(PUBLISHER, READING), n, current) || scans(load(PUBLISHER, READING))))
+  (knows_reader && \
+   (is_in(load(PUBLISHER, READING), n, current) || pins_all(load(PUBLISHER, READING))))
 
 inline retire(e, n, current) {
 #if BUG == 1

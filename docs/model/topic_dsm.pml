@@ -41,7 +41,7 @@
 #define active 1
 #define revoked 2
 
-#define every_record 255
+#define header_only 255
 #define NUMBER 9          /* of the stale hint; the next publisher starts with lower ones */
 
 #include "tso.pml"
@@ -67,7 +67,7 @@ inline release(whose) {
 
 inline look_at_last() {
 #if BUG != 13
-  store_seq_cst(READER, READING, every_record);
+  store_seq_cst(READER, READING, header_only);
 #endif
   if
   :: load(READER, STATE) == active && load(READER, INCARNATION) == 1 || BUG == 13 -> touch(1)

@@ -22,9 +22,10 @@ struct alignas(64) SourceEntry {
   std::atomic<uint64_t> topic_dsm;    ///< SegmentRef of its header
   std::atomic<uint32_t> topic_dsm_endpoint;
   std::atomic<uint32_t> topic_dsm_incarnation;
-  std::atomic<uint64_t> taken;    ///< the reader is done with all records up to this number
-  std::atomic<uint64_t> reading;  ///< record being read (the claim), every_record, or no_record
-  std::atomic<uint64_t> reader;   ///< SegmentRef of the ReaderEntry
+  std::atomic<uint64_t> taken;  ///< the reader is done with all records up to this number
+  /// What is being read: a record (the claim), whole_generation, header_only, or no_record.
+  std::atomic<uint64_t> reading;
+  std::atomic<uint64_t> reader;  ///< SegmentRef of the ReaderEntry
   /// Publication sequence number up to which each message is accounted for: published before the
   /// match, taken, expired, or counted as lost. Written by the subscriber under its claim, and by
   /// the sweeper once the source is revoked and nothing is claimed. Of a closed subscription: the

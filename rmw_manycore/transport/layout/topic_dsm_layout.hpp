@@ -10,8 +10,11 @@ namespace manycore {
 
 constexpr uint32_t max_generations = 8;
 constexpr uint64_t no_record = 0;  ///< record numbers start at 1
-/// Value of SourceEntry::reading that keeps the topic DSM and its generations, but no record.
-constexpr uint64_t every_record = UINT64_MAX;
+/// In SourceEntry::reading: with this bit, the number of a generation's first record keeps the
+/// generation, but no record.
+constexpr uint64_t whole_generation = uint64_t{1} << 63;
+/// Value of SourceEntry::reading that keeps the header of the topic DSM, but no generation.
+constexpr uint64_t header_only = UINT64_MAX;
 
 /// One record of a topic DSM. Written by the publisher; a reader accesses it only under its claim.
 struct alignas(64) RecordDescriptor {

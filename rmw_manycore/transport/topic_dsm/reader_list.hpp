@@ -101,14 +101,16 @@ public:
     return false;
   }
 
-  /// True while a reader scans, or has or may have a claim on a record in [first, last].
+  /// True while a reader has, or may have, a claim on a record in [first, last], or scans a
+  /// generation that begins there.
   bool is_any_pinned(uint64_t first, uint64_t last) const noexcept {
     if (!is_complete()) {
       return true;
     }
     for (const Reader & reader : readers_) {
-      const uint64_t reading = reader.source->reading.load(std::memory_order_seq_cst);
-      if ((reading >= first && reading <= last) || reading == every_record) {
+      const uint64_t reading =
+        reader.source->reading.load(std::memory_order_seq_cst) & ~whole_generation;
+      if (reading >= first && reading <= last) {
         return true;
       }
     }

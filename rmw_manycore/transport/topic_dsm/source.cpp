@@ -45,7 +45,7 @@ bool Source::is_given_up(uint64_t number) const noexcept {
 
 std::optional<uint64_t> Source::published_number(uint64_t low_bits) noexcept {
   std::optional<uint64_t> number;
-  entry_->reading.store(every_record, std::memory_order_seq_cst);
+  entry_->reading.store(header_only, std::memory_order_seq_cst);
   if (may_look()) {
     const uint64_t latest = arrived().last();  // load once: it increases concurrently
     number = Hint::full_number(low_bits, latest);
@@ -168,21 +168,26 @@ bool Source::release(uint64_t number) noexcept {
 }
 
 bool Source::skip(uint64_t number) noexcept {
-  entry_->reading.store(every_record, std::memory_order_seq_cst);
+  entry_->reading.store(header_only, std::memory_order_seq_cst);
   const bool is_over = may_look() && release(number);
   entry_->reading.store(no_record, std::memory_order_release);
   return is_over;
 }
 
-/// Pins one record after the other, so a reader stopped in a scan costs one record, like any claim.
-/// The generation stays pinned throughout: each value of `reading` is a record in it, or
-/// every_record.
+/// Pins the generation, then one record after the other in it, so a reader that is stopped in a
+/// scan costs at most what a claim costs: one record, and no younger generation. Dekker with
+/// retire(), as in generation_of(): a generation that is still open in the second load is not freed
+/// while `reading` names it or a record in it.
 void Source::scan(
   const GenerationEntry & generation, const transfer::Arrived & arrived, uint64_t last,
   std::vector<Waiting> & out) noexcept {
-  entry_->reading.store(every_record, std::memory_order_seq_cst);
-  const bool open = generation.first.load(std::memory_order_seq_cst) != 0;
-  const Descriptors descriptors = open ? descriptors_of(generation) : Descriptors{};
+  const uint64_t first = generation.first.load(std::memory_order_seq_cst);
+  if (first == 0 || first > last) {
+    return;
+  }
+  entry_->reading.store(whole_generation | first, std::memory_order_seq_cst);
+  const bool is_open = generation.first.load(std::memory_order_seq_cst) == first;
+  const Descriptors descriptors = is_open ? descriptors_of(generation) : Descriptors{};
   for (uint64_t i = 0; i < descriptors.count; ++i) {
     RecordDescriptor & record = descriptors.begin[i];
     const uint64_t number = record.number.load(std::memory_order_relaxed);
@@ -199,7 +204,7 @@ void Source::scan(
 
 void Source::list_waiting(std::vector<Waiting> & out) noexcept {
   const auto own_part = static_cast<ptrdiff_t>(out.size());
-  entry_->reading.store(every_record, std::memory_order_seq_cst);
+  entry_->reading.store(header_only, std::memory_order_seq_cst);
   if (may_look()) {
     // Most sources have no new record: a subscription resyncs for each publisher that joins.
     const transfer::Arrived arrived = this->arrived();
@@ -233,7 +238,7 @@ uint64_t Source::account_for(uint64_t last_sequence) noexcept {
 
 Source::Settled Source::settle() noexcept {
   Settled settled = Settled::no;
-  entry_->reading.store(every_record, std::memory_order_seq_cst);
+  entry_->reading.store(header_only, std::memory_order_seq_cst);
   if (may_look()) {
     const LastPublished published = last_published(*dsm_);
     const std::optional<uint64_t> displaced = Displaced::read(entry_->displaced, incarnation_);

@@ -54,7 +54,7 @@ bool TopicDsmWriter::retire(Generation & old) {
   }
   readers_.refresh();
   // A reader that looked for a record of a younger generation, closed since, may have arrived at
-  // this one.
+  // this one. One that looks at the header only keeps none.
   old.is_unread = !readers_.is_any_pinned(old.first, current_.first - 1);
   return old.is_unread;
 }
@@ -268,9 +268,11 @@ void TopicDsmWriter::require_data_bytes(uint64_t need_bytes) {
     }
   } catch (const Error & error) {
     endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+    const bool is_full = error.code() == ErrorCode::no_space;
     throw Error(
-      error.code() == ErrorCode::no_space ? ErrorCode::too_large : error.code(),
-      message_text(need_bytes) + " needs a larger topic DSM, but " + error.what());
+      is_full ? ErrorCode::too_large : error.code(),
+      message_text(need_bytes) + " needs a larger topic DSM, but " +
+        (is_full && !old_.empty() ? holders_text() + ", and " : "") + error.what());
   }
   endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
   throw Error(ErrorCode::too_large, message_text(need_bytes) + refusal_text(need_bytes));
@@ -278,6 +280,16 @@ void TopicDsmWriter::require_data_bytes(uint64_t need_bytes) {
 
 std::string TopicDsmWriter::message_text(uint64_t need_bytes) const {
   return "a message of " + std::to_string(need_bytes) + " bytes on '" + endpoint_.topic + "'";
+}
+
+/// Who keeps earlier sizes: a message is taken and let go of before its memory is free.
+std::string TopicDsmWriter::holders_text() const {
+  uint64_t bytes = 0;
+  for (const Generation & old : old_) {
+    bytes += old.entry->extent_bytes();
+  }
+  return "subscriptions hold messages of " + std::to_string(old_.size()) +
+         " earlier sizes of it, " + std::to_string(bytes) + " bytes, not taken or being read";
 }
 
 /// Why add_generation_for() adds none, and what helps.
@@ -291,9 +303,7 @@ std::string TopicDsmWriter::refusal_text(uint64_t need_bytes) const {
            " bytes; set " + own_size;
   }
   if (need_bytes <= data_limit()) {
-    return " needs a larger topic DSM, but subscriptions still hold messages of " +
-           std::to_string(max_generations - 1) + " earlier sizes of it; take them, or set " +
-           own_size;
+    return " needs a larger topic DSM, but " + holders_text() + "; take them, or set " + own_size;
   }
   const uint64_t helps = align_up(2 * need_bytes, mebibyte);
   return " does not fit: a topic DSM grows to at most half of the SMEM of its cluster, which has " +

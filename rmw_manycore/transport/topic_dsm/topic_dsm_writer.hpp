@@ -90,6 +90,7 @@ private:
   void open_generation(GenerationEntry & entry);
   void require_data_bytes(uint64_t need_bytes);
   std::string message_text(uint64_t need_bytes) const;
+  std::string holders_text() const;
   std::string refusal_text(uint64_t need_bytes) const;
   void wait_for_progress(uint64_t number);
   uint64_t data_limit() const noexcept;

@@ -1,0 +1,138 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// What a reader keeps of a topic DSM that grows: a stopped one no more than what it was looking at.
+// Readers that keep each of its generations are named by the error.
+#include <doctest/doctest.h>
+
+#include "messages.hpp"
+#include "platform_of_test.hpp"
+#include "stepped_child.hpp"
+#include "transport/lifecycle/configurator.hpp"
+#include "transport/topic_dsm/reader_table.hpp"
+
+using namespace manycore;
+
+namespace {
+
+constexpr const char * topic = "/grows";
+constexpr uint32_t depth = 2;
+constexpr uint64_t mebibyte = 1 << 20;
+
+/// Takes what there is; some of it was published before it came.
+const Role reads("reads_generations", [](Lines &, const Arguments & arguments) {
+  Placement placement;
+  placement.platform = arguments.at(0);
+  const auto process = Process::join(placement);
+  const auto subscription = process->create_subscription(on_topic(topic, transient_local(depth)));
+  begin_steps();
+  take_all(*subscription);  // throws if one is torn
+  finish_steps();
+});
+
+/// Publishes so many messages of each of growing sizes, until one is refused: up to a size that
+/// takes twice as many generations as a topic DSM has.
+Refusal refusal_of_growth(Publisher & publisher, uint64_t & number, uint32_t of_each_size) {
+  return refusal_of([&] {
+    for (double size = 2100; size < 5 * mebibyte; size *= 1.6) {
+      for (uint32_t i = 0; i < of_each_size; ++i) {
+        publish(publisher, ++number, static_cast<size_t>(size));
+      }
+    }
+  });
+}
+
+struct Fixture {
+  explicit Fixture(const Qos & qos) : publisher(process->create_publisher(on_topic(topic, qos))) {}
+
+  /// Of the only source of the child's subscription.
+  const std::atomic<uint64_t> & reading() {
+    Registry & registry = inspection.registry();
+    const SourceEntry * found = nullptr;
+    for_each_reader(
+      registry.clusters().at(1), inspection.header_of(*publisher), [&](const ReaderEntry & reader) {
+        found = registry.clusters().find<SourceEntry>(SegmentRef{reader.source.load()});
+      });
+    REQUIRE(found != nullptr);
+    return found->reading;
+  }
+
+  TestPlatform platform;
+  std::shared_ptr<Process> process = platform.join();
+  Inspection inspection{platform};
+  std::unique_ptr<Publisher> publisher;
+  uint64_t published = 0;
+};
+
+/// Steps a reader through a take until it has stored `reading` so many times, and leaves it there.
+/// False if the take ended before.
+bool stop_reader(SteppedChild & reader, const std::atomic<uint64_t> & reading, int stores) {
+  for (uint64_t before = reading; stores != 0;) {
+    if (reader.step(1) == 0) {
+      return false;
+    }
+    const uint64_t now = reading;
+    stores -= now == before ? 0 : 1;
+    before = now;
+  }
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("wherever a reader stops in a look or a claim, messages may grow") {
+  bool is_over = false;
+  int kept = 0;
+  for (int stores = 1; !is_over; ++stores) {
+    CAPTURE(stores);
+    Fixture f(transient_local(depth));
+    publish(*f.publisher, ++f.published);
+    SteppedChild reader("reads_generations", {f.platform.name()});
+    publish(*f.publisher, ++f.published);
+    const std::atomic<uint64_t> & reading = f.reading();
+    is_over = !stop_reader(reader, reading, stores);
+    const GenerationEntry & generation = f.inspection.header_of(*f.publisher).generations[0];
+    const uint64_t offset = generation.offset;
+    const uint64_t bytes = generation.data_bytes;
+    const Refusal refusal = refusal_of_growth(*f.publisher, f.published, depth + 1);
+    REQUIRE_MESSAGE(!refusal.code, refusal.text);
+    const bool is_kept = reading != no_record && reading != header_only;
+    kept += is_kept ? 1 : 0;
+    CHECK((!is_kept || (generation.offset == offset && generation.data_bytes == bytes)));
+    while (!reader.finished()) {  // what it has claimed is still whole
+      reader.run_to_system_call();
+    }
+    REQUIRE(stores < 100);
+  }
+  CHECK(kept > 3);  // a scan, and more than one claim
+}
+
+TEST_CASE("subscriptions that keep messages of each size are named, not the memory") {
+  Fixture f(keep_last(1));
+  const auto subscription = f.process->create_subscription(on_topic(topic, keep_last(1000)));
+  const Refusal refusal = refusal_of_growth(*f.publisher, f.published, 1);
+  CHECK(refusal.code == ErrorCode::too_large);
+  CHECK_MESSAGE(refusal.says("subscriptions hold messages of 7 earlier sizes"), refusal.text);
+  CHECK_FALSE_MESSAGE(refusal.says("/dev/shm"), refusal.text);
+  CHECK(take_all(*subscription).size() + 1 == f.published);
+  CHECK_FALSE(refusal_of([&] { publish(*f.publisher, 1, 5 * mebibyte); }).code);
+}
+
+TEST_CASE("subscriptions that keep messages until the SMEM is full are named as well") {
+  const TestPlatform platform;
+  Profile profile = host_profile();
+  profile.smem_bytes = 16 * mebibyte;
+  const Configurator configurator(platform.name(), profile, {});
+  const auto process = platform.join();
+  const auto publisher = process->create_publisher(on_topic(topic, keep_last(1)));
+  const auto subscription = process->create_subscription(on_topic(topic, keep_last(1000)));
+  for (uint64_t size = mebibyte; size < 8 * mebibyte; size *= 2) {
+    publish(*publisher, 1, size);
+  }
+  const auto publish_largest = [&] { publish(*publisher, 2, 8 * mebibyte); };
+  const Refusal refusal = refusal_of(publish_largest);
+  CHECK(refusal.code == ErrorCode::too_large);
+  CHECK_MESSAGE(refusal.says("subscriptions hold messages of 2 earlier sizes"), refusal.text);
+  CHECK_MESSAGE(refusal.says("bytes of SMEM are used"), refusal.text);
+  CHECK(take_all(*subscription).size() == 3);
+  CHECK_FALSE(refusal_of(publish_largest).code);
+}
