@@ -60,7 +60,8 @@ struct Fixture {
 
 }  // namespace
 
-void * operator new(size_t size) {
+// Not inlined: g++ would take each free() for one of memory from another allocation function.
+[[gnu::noinline]] void * operator new(size_t size) {
   void * const memory = may_allocate ? std::malloc(size) : nullptr;
   if (memory == nullptr) {
     throw std::bad_alloc();
@@ -68,8 +69,8 @@ void * operator new(size_t size) {
   return memory;
 }
 
-void operator delete(void * memory) noexcept { std::free(memory); }
-void operator delete(void * memory, size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void * memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void * memory, size_t) noexcept { std::free(memory); }
 
 TEST_CASE("without memory for new readers a publish is refused, and the next one reaches all") {
   Fixture f;
