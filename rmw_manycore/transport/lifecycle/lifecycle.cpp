@@ -1,7 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/lifecycle/lifecycle.hpp"
 
-#include <dirent.h>
 #include <dlfcn.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
@@ -11,6 +10,7 @@
 #include <cerrno>
 #include <climits>
 #include <cstdlib>
+#include <exception>
 
 #include "platform/clock.hpp"
 #include "platform/os_process.hpp"
@@ -33,33 +33,24 @@ void make_private_directory(const std::string & path) {
   PrivateDirectory::open(path);  // if its last user has just removed it, the caller tries again
 }
 
-std::vector<std::string> entries_of(const std::string & directory) {
-  std::vector<std::string> names;
-  DIR * const handle = opendir(directory.c_str());
-  if (handle == nullptr) {
-    return names;
-  }
-  while (const dirent * const entry = readdir(handle)) {
-    const std::string name = entry->d_name;
-    if (name != "." && name != "..") {
-      names.push_back(name);
-    }
-  }
-  closedir(handle);
-  return names;
-}
-
-/// Removes the join lock, and the user directory, at its end if no platform is left.
-struct UserDirectoryTidier {
-  ~UserDirectoryTidier() {
-    if (
-      entries_of(paths.user_directory) == std::vector<std::string>{PlatformPaths::join_lock_name}) {
-      unlink(paths.join_lock().c_str());
+/// Removes the join lock, and the user directory, if no platform is left. What it cannot remove, the
+/// next process that holds the lock tidies up.
+void tidy_user_directory(const PlatformPaths & paths) noexcept {
+  try {
+    const auto directory = PrivateDirectory::open(paths.user_directory);
+    const std::vector<std::string> only_lock{PlatformPaths::join_lock_name};
+    if (directory && directory->entries() == only_lock) {
+      directory->remove(PlatformPaths::join_lock_name);
       if (!paths.is_chosen) {
         rmdir(paths.user_directory.c_str());
       }
     }
+  } catch (const std::exception &) {
   }
+}
+
+struct UserDirectoryTidier {
+  ~UserDirectoryTidier() { tidy_user_directory(paths); }
   const PlatformPaths & paths;
 };
 
