@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "stepped_child.hpp"
 #include "transfer_of_test.hpp"
 #include "transport/movers/copy_mover.hpp"
 #include "transport/movers/packet_mover.hpp"
@@ -26,18 +25,6 @@ using transfer_of_test::kinds;
 namespace {
 
 constexpr size_t three_packets = 10'000;
-
-const Role sends("sends_in_phase", [](Lines &, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
-  const auto publisher = process->create_publisher(on_topic("/x", keep_last(10)));
-  wait_until("a match", [&] { return publisher->matched().current == 1; });
-  publish(*publisher, 1, sizeof(Payload), 2);
-  begin_steps();
-  publish(*publisher, 2, three_packets, 2);
-  finish_steps();
-});
 
 /// Act like threads of a receive thread's process; the test stops that one.
 const Role moves_packets("moves_packets", [](Lines &, const Arguments & arguments) {
@@ -150,7 +137,7 @@ struct SteppedPublisher {
 void kill_publisher(Transfer kind, size_t index) {
   Fixture f(by(kind));
   f.publisher.reset();
-  SteppedChild child("sends_in_phase", {f.platform.name()});
+  SteppedChild child("sends", {f.platform.name(), std::to_string(three_packets)});
   std::optional<SteppedPublisher> publisher(std::in_place, f, kind);
   const Point point = publisher->points().at(index);
   CAPTURE(point.name);
@@ -175,6 +162,8 @@ void kill_publisher(Transfer kind, size_t index) {
 void kill_at_point_of_service(
   Fixture & f, const std::string & role, uint32_t cluster, const Point & point) {
   CAPTURE(point.name);
+  // Else the receive thread may be stopped in the phase of the message before.
+  wait_until("the message before is dealt with", [&] { return !point.is_reached(); });
   const pid_t pid = f.platform.stop_receive_thread(cluster);
   f.publish_numbers(2, 2, three_packets);
   const uint64_t taken = f.counters(EndpointKind::subscription).messages;

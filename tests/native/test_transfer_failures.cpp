@@ -9,7 +9,6 @@
 #include <csignal>
 #include <vector>
 
-#include "stepped_child.hpp"
 #include "transfer_of_test.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 
@@ -21,19 +20,6 @@ using transfer_of_test::open_pipe;
 using transfer_of_test::packets_in;
 
 namespace {
-
-/// Publishes a message of several packets; the test may step through it.
-const Role sends("sends", [](Lines &, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
-  const auto publisher = process->create_publisher(on_topic("/x", keep_last(10)));
-  wait_until("a match", [&] { return publisher->matched().current == 1; });
-  publish(*publisher, 1, sizeof(Payload), 2);
-  begin_steps();
-  publish(*publisher, 2, std::stoull(arguments.at(1)), 2);
-  finish_steps();
-});
 
 /// Subscribes to so many topics /s1, /s2 ..., in cluster 2: "ok", or why not.
 const Role subscribes("subscribes", [](Lines & test, const Arguments & arguments) {

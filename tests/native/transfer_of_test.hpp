@@ -8,6 +8,7 @@
 
 #include "messages.hpp"
 #include "node_role.hpp"
+#include "stepped_child.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/transfer/landing.hpp"
 #include "waiting.hpp"
@@ -18,6 +19,19 @@ using namespace manycore;
 
 constexpr uint32_t dsm_bytes = 4 << 20;
 constexpr Transfer kinds[] = {Transfer::message, Transfer::session, Transfer::async};
+
+/// Publishes message 1, and message 2 of this size, through which the test may step.
+inline const Role sends("sends", [](Lines &, const Arguments & arguments) {
+  Placement placement;
+  placement.platform = arguments.at(0);
+  const auto process = Process::join(placement);
+  const auto publisher = process->create_publisher(on_topic("/x", keep_last(10)));
+  wait_until("a match", [&] { return publisher->matched().current == 1; });
+  publish(*publisher, 1, sizeof(Payload), 2);
+  begin_steps();
+  publish(*publisher, 2, std::stoull(arguments.at(1)), 2);
+  finish_steps();
+});
 
 inline TransferSettings by(Transfer kind, uint8_t priority = 0, bool synchronous = false) {
   TransferSettings settings;
