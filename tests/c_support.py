@@ -19,6 +19,34 @@ rmw = ctypes.CDLL(str(LIBRARIES / f"lib{RMW}.so"))
 rcl = ctypes.CDLL(str(LIBRARIES / "librcl.so"))
 rcutils = ctypes.CDLL(str(LIBRARIES / "librcutils.so"))
 
+ALLOCATE = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+FREE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
+RESIZE = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+ZEROED = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_void_p)
+
+
+class Allocator(ctypes.Structure):
+    """rcutils_allocator_t."""
+
+    _fields_ = (
+        ("allocate", ALLOCATE),
+        ("free", FREE),
+        ("resize", RESIZE),
+        ("zeroed", ZEROED),
+        ("state", ctypes.c_void_p),
+    )
+
+
+class Bytes(ctypes.Structure):
+    """rmw_serialized_message_t."""
+
+    _fields_ = (
+        ("buffer", ctypes.POINTER(ctypes.c_uint8)),
+        ("length", ctypes.c_size_t),
+        ("capacity", ctypes.c_size_t),
+        ("allocator", Allocator),
+    )
+
 
 def rcl_handle(entity: Any) -> ctypes.c_void_p:
     return ctypes.c_void_p(entity.handle.pointer)

@@ -7,7 +7,19 @@ import ctypes
 from typing import Any
 
 import pytest
-from c_support import c_message, rcutils, rmw, rmw_handle, type_support
+from c_support import (
+    ALLOCATE,
+    FREE,
+    RESIZE,
+    ZEROED,
+    Allocator,
+    Bytes,
+    c_message,
+    rcutils,
+    rmw,
+    rmw_handle,
+    type_support,
+)
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Path
 from rclpy.serialization import deserialize_message, serialize_message
@@ -19,27 +31,14 @@ from test_msgs.msg import BasicTypes, MultiNested, Strings, UnboundedSequences, 
 
 OK, ERROR, BAD_ALLOC = 0, 1, 10
 
-_ALLOCATE = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
-_FREE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
-_RESIZE = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
-_ZEROED = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_void_p)
-
 libc = ctypes.CDLL(None)
 for name in ("malloc", "calloc", "realloc"):
     getattr(libc, name).restype = ctypes.c_void_p
 rcutils.rcutils_error_is_set.restype = ctypes.c_bool
 
 
-class Allocator(ctypes.Structure):
-    """rcutils_allocator_t that fails after some allocations."""
-
-    _fields_ = (
-        ("allocate", _ALLOCATE),
-        ("free", _FREE),
-        ("resize", _RESIZE),
-        ("zeroed", _ZEROED),
-        ("state", ctypes.c_void_p),
-    )
+class FailingAllocator(Allocator):
+    """An allocator that fails after some allocations."""
 
     def __init__(self, allocations: int = 0) -> None:
         self.left = allocations
@@ -49,22 +48,11 @@ class Allocator(ctypes.Structure):
             return function(*map(ctypes.c_size_t, arguments)) if self.left >= 0 else None
 
         super().__init__(
-            _ALLOCATE(lambda size, _: grant(libc.malloc, size)),
-            _FREE(lambda pointer, _: libc.free(ctypes.c_void_p(pointer))),
-            _RESIZE(lambda pointer, size, _: grant(libc.realloc, pointer or 0, size)),
-            _ZEROED(lambda count, size, _: grant(libc.calloc, count, size)),
+            ALLOCATE(lambda size, _: grant(libc.malloc, size)),
+            FREE(lambda pointer, _: libc.free(ctypes.c_void_p(pointer))),
+            RESIZE(lambda pointer, size, _: grant(libc.realloc, pointer or 0, size)),
+            ZEROED(lambda count, size, _: grant(libc.calloc, count, size)),
         )
-
-
-class Bytes(ctypes.Structure):
-    """rmw_serialized_message_t."""
-
-    _fields_ = (
-        ("buffer", ctypes.POINTER(ctypes.c_uint8)),
-        ("length", ctypes.c_size_t),
-        ("capacity", ctypes.c_size_t),
-        ("allocator", Allocator),
-    )
 
 
 def failed(code: int) -> int:
@@ -78,7 +66,7 @@ def failed(code: int) -> int:
 @pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS loses it uncounted")
 @pytest.mark.parametrize(
     ("message", "code"),
-    [(Bytes(allocator=Allocator()), BAD_ALLOC), (Bytes(), ERROR)],
+    [(Bytes(allocator=FailingAllocator()), BAD_ALLOC), (Bytes(), ERROR)],
     ids=["allocation_fails", "no_allocator"],
 )
 def test_a_message_that_does_not_fit_into_the_buffer_counts_as_lost(node, message, code):
@@ -114,7 +102,7 @@ def test_each_failed_allocation_is_reported(node):
     handle = rmw_handle("node", node)
     codes = []
     while OK not in codes:
-        found, allocator = Endpoints(), Allocator(len(codes))
+        found, allocator = Endpoints(), FailingAllocator(len(codes))
         arguments = (ctypes.byref(allocator), b"/points", False, ctypes.byref(found))
         codes.append(failed(rmw.rmw_get_publishers_info_by_topic(handle, *arguments)))
     assert found.size == 1

@@ -8,7 +8,7 @@ import struct
 from typing import Any
 
 import pytest
-from c_support import rcl, rcl_handle, rcutils, rmw, rmw_handle, take_points
+from c_support import Allocator, Bytes, rcl, rcl_handle, rcutils, rmw, rmw_handle, take_points
 from geometry_msgs.msg import Point
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
@@ -18,21 +18,6 @@ from support import IS_MANYCORE
 
 OK, INVALID_ARGUMENT = 0, 11
 POINT_BYTES = 24  # three doubles in memory, and behind four bytes of header in CDR
-
-
-class Allocator(ctypes.Structure):
-    _fields_ = tuple((name, ctypes.c_void_p) for name in ("a", "d", "r", "z", "state"))
-
-
-class Bytes(ctypes.Structure):
-    """rmw_serialized_message_t."""
-
-    _fields_ = (
-        ("buffer", ctypes.POINTER(ctypes.c_uint8)),
-        ("length", ctypes.c_size_t),
-        ("capacity", ctypes.c_size_t),
-        ("allocator", Allocator),
-    )
 
 
 class Event(ctypes.Structure):
