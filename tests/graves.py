@@ -7,8 +7,8 @@ import time
 
 from processes import kill
 from running_time import RunningTime
-from steady_load import RECOVERY_S
-from support import IS_MANYCORE
+from steady_load import RECOVERY_S, Load
+from support import IS_MANYCORE, Program
 
 
 class Graves:
@@ -36,6 +36,12 @@ class Graves:
 
     def assert_all_reclaimed(self) -> None:
         self._running_time.wait_within(RECOVERY_S, lambda: not self._members(), "none is left")
+
+    def assert_survived_by(self, load: Load, nursery: Program) -> None:
+        """Check that all is reclaimed, and that neither the load nor a victim was harmed."""
+        self.assert_all_reclaimed()
+        load.assert_it_goes_on_unharmed()
+        assert "torn" not in nursery.output, nursery
 
     def _members(self) -> list[int]:
         """Return the killed processes that still have a slot in the registry."""

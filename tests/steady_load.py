@@ -55,6 +55,10 @@ class Load:
                 counted_s = self._running_time.between_s(int(gap[1]), int(gap[2]))
                 assert counted_s <= RECOVERY_S, program
 
+    def assert_it_goes_on_unharmed(self) -> None:
+        self.wait_until_it_goes_on()
+        self.assert_unharmed()
+
     def assert_in_order(self) -> None:
         for program in (self.publisher, *self.checkers):
             assert program.is_running(), program

@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+import os
+import random
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from graves import Graves
 from running_time import RunningTime
+from steady_load import Load
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -21,3 +25,22 @@ def running_time() -> Iterator[RunningTime]:
     clock = RunningTime()
     yield clock
     clock.stop()
+
+
+@pytest.fixture
+def seed() -> int:
+    """Seed the random numbers; the output of a failed test has the seed that repeats it."""
+    seed = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
+    print(f"MANYCORE_TEST_SEED={seed}")
+    random.seed(seed)
+    return seed
+
+
+@pytest.fixture
+def load(seed, start, running_time) -> Load:
+    return Load(start, running_time)
+
+
+@pytest.fixture
+def graves(platform: str, running_time: RunningTime) -> Graves:
+    return Graves(platform, running_time)

@@ -6,14 +6,10 @@ docs/model/registry_lock.pml covers each order of steps; here the real kernel an
 
 from __future__ import annotations
 
-import os
-import random
-
 import pytest
 from containers import bring_up
 from support import IS_MANYCORE, KILLS, TIMEOUT_S, example_command, peer_command, wait_until
 
-SEED = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
 CONTAINERS = 6
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS has no registry")
@@ -26,12 +22,11 @@ def endpoints_of(platform: str) -> int:
         return len(seen.endpoints())
 
 
-def test_containers_come_up_while_others_are_killed(start, platform):
-    print(f"MANYCORE_TEST_SEED={SEED}")
+def test_containers_come_up_while_others_are_killed(seed, start, platform):
     outside = start(example_command("talker"))
     outside.wait_for("Publishing")
     before = endpoints_of(platform)
-    storm = start(peer_command(bring_up, KILLS, CONTAINERS, SEED))
+    storm = start(peer_command(bring_up, KILLS, CONTAINERS, seed))
     result = storm.wait_for(r"\d+ rounds, \d+ failures", timeout_s=TIMEOUT_S + KILLS)
     assert result.group(0) == f"{KILLS} rounds, 0 failures", storm
     wait_until(lambda: endpoints_of(platform) == before, "all containers are reaped")

@@ -6,7 +6,6 @@ tests/integration/test_emcos_failures.py kills at named lines; a random kill als
 
 from __future__ import annotations
 
-import os
 import random
 import threading
 from pathlib import Path
@@ -20,20 +19,17 @@ from rmw_manycore_py.emcos import PeerGoneError
 
 pytestmark = pytest.mark.stress
 
-SEED = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
 LONGEST_LIFE_S = 0.05
 
 
 @pytest.mark.parametrize("role", OTHER)
-def test_a_side_is_killed_at_any_moment(start, platform: str, role: str) -> None:
-    print(f"MANYCORE_TEST_SEED={SEED}")
-    draw = random.Random(SEED)
+def test_a_side_is_killed_at_any_moment(seed, start, platform: str, role: str) -> None:
     pids = []
     for _ in range(max(KILLS // 20, 1)):
         victim = start(peer_command(run, role))
         pids.append(victim.pid)
         with OPEN[OTHER[role]](platform) as end:
-            timer = threading.Timer(draw.uniform(0, LONGEST_LIFE_S), kill, [victim.pid])
+            timer = threading.Timer(random.uniform(0, LONGEST_LIFE_S), kill, [victim.pid])
             timer.start()
             with pytest.raises(PeerGoneError, match="ended without closing its side"):
                 use(end, OTHER[role])

@@ -7,15 +7,13 @@ them; what it shows is that nothing common is wrong. The model in docs/model/ co
 
 from __future__ import annotations
 
-import os
 import random
 import time
 
 import pytest
-from graves import Graves
 from load import breed
 from processes import kill, processes_of, receive_threads_of
-from steady_load import RECOVERY_S, Load
+from steady_load import RECOVERY_S
 from support import (
     IS_MANYCORE,
     KILLS,
@@ -25,7 +23,6 @@ from support import (
     wait_until,
 )
 
-SEED = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
 LONGEST_LIFE_S = 0.2  # lifetime of a victim: joining takes some milliseconds, and may be hit, too
 JOINING_S = 0.03  # about the time from the fork to the first message
 CLUSTERS = 2
@@ -43,18 +40,6 @@ def some_receive_threads_of(platform: str) -> list[int]:
     return found
 
 
-@pytest.fixture
-def load(start, running_time) -> Load:
-    print(f"MANYCORE_TEST_SEED={SEED}")
-    random.seed(SEED)
-    return Load(start, running_time)
-
-
-@pytest.fixture
-def graves(platform, running_time) -> Graves:
-    return Graves(platform, running_time)
-
-
 def test_killed_nodes(start, load, graves):
     """Publishers and subscriptions join, and die at a random moment of their short lives."""
     nursery = start(peer_command(breed))
@@ -66,12 +51,8 @@ def test_killed_nodes(start, load, graves):
         graves.kill(victim)
         graves.assert_reclaimed()
         if number % 50 == 49:
-            load.wait_until_it_goes_on()
-            load.assert_unharmed()
-    graves.assert_all_reclaimed()
-    load.wait_until_it_goes_on()
-    load.assert_unharmed()
-    assert "torn" not in nursery.output, nursery
+            load.assert_it_goes_on_unharmed()
+    graves.assert_survived_by(load, nursery)
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="only rmw_manycore has receive threads")
@@ -104,10 +85,7 @@ def test_everything_dies_at_random(start, platform, load, graves):
                 kill(pid)
     for victim in victims:
         graves.kill(victim)
-    graves.assert_all_reclaimed()
-    load.wait_until_it_goes_on()
-    load.assert_unharmed()
-    assert "torn" not in nursery.output, nursery
+    graves.assert_survived_by(load, nursery)
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="about what rmw_manycore leaves in /dev/shm")

@@ -14,19 +14,15 @@ import sys
 from pathlib import Path
 
 import pytest
-from graves import Graves
 from load import TOPIC, fork
 from memory_cgroup import NoMemoryCgroupError, memory_cgroup
 from payload import make_message
 from ros_support import announce, peer_node
-from running_time import RunningTime
 from std_msgs.msg import UInt8MultiArray
-from steady_load import Load
 from support import IS_MANYCORE, KILLS, peer_command, wait_until
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="about the memory of rmw_manycore")
 
-SEED = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
 MIB = 1 << 20
 LIMITS_BYTES = (4 * MIB, 64 * MIB)  # from an end while the node joins to one while it grows
 SIZES_BYTES = (1000, 10_000, 100_000)
@@ -65,13 +61,6 @@ def cgroups() -> None:
         pytest.skip(str(error))
 
 
-@pytest.fixture
-def load(start, running_time: RunningTime) -> Load:
-    print(f"MANYCORE_TEST_SEED={SEED}")
-    random.seed(SEED)
-    return Load(start, running_time)
-
-
 def is_running(pid: int) -> bool:
     try:
         os.kill(pid, 0)
@@ -80,8 +69,7 @@ def is_running(pid: int) -> bool:
     return True
 
 
-def test_nodes_without_memory_are_killed(start, load, platform, running_time) -> None:
-    graves = Graves(platform, running_time)
+def test_nodes_without_memory_are_killed(start, load, graves) -> None:
     nursery = start(peer_command(breed_in_cgroups))
     nursery.wait_for("ready")
     for number in range(KILLS // 20):
@@ -93,9 +81,5 @@ def test_nodes_without_memory_are_killed(start, load, platform, running_time) ->
             assert cgroup.kills() == 1, nursery
         graves.assert_reclaimed()
         if number % 10 == 9:
-            load.wait_until_it_goes_on()
-            load.assert_unharmed()
-    graves.assert_all_reclaimed()
-    load.wait_until_it_goes_on()
-    load.assert_unharmed()
-    assert "torn" not in nursery.output, nursery
+            load.assert_it_goes_on_unharmed()
+    graves.assert_survived_by(load, nursery)

@@ -22,7 +22,6 @@ from test_msgs.srv import Arrays, BasicTypes, Empty
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="sends with the transport's own binding")
 
-SEED = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
 CALLS = int(os.environ.get("MANYCORE_TEST_MUTATED_CALLS", "10000"))
 BATCH = 8  # fewer than the depth of a service
 WORDS = (0, 1, 2, 0xFF, 0x7FFFFFFF, 0xFFFFFFFF)
@@ -151,11 +150,9 @@ class Target:
         return int(self._peer.wait_for(r"served (\d+)").group(1))
 
 
-def test_mutated_calls_are_taken_or_counted(start, platform: str) -> None:
+def test_mutated_calls_are_taken_or_counted(seed, start, platform: str) -> None:
     from rmw_manycore_py import _transport
 
-    print(f"MANYCORE_TEST_SEED={SEED}")
-    random.seed(SEED)
     peer = start(peer_command(serve))
     peer.wait_for("serves")
     with _transport.Process(platform, 1, None, "mutator") as process:

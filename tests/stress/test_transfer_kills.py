@@ -7,7 +7,6 @@ sessions, landings and topic DSMs of the dead come back.
 
 from __future__ import annotations
 
-import os
 import random
 import time
 
@@ -20,15 +19,12 @@ from transferred import DSM_BYTES, KINDS, configure
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="transfers are rmw_manycore's")
 
-SEED = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
 LONGEST_LIFE_S = 0.2
 CLUSTERS = 3  # nothing else runs in the third: its receive thread comes and its nodes go
 
 
 @pytest.fixture(params=KINDS)
-def kind(request: pytest.FixtureRequest, start) -> str:
-    print(f"MANYCORE_TEST_SEED={SEED}")
-    random.seed(SEED)
+def kind(request: pytest.FixtureRequest, seed, start) -> str:
     kind = str(request.param)
     start(peer_command(configure, kind, [f"/{TOPIC}"], CLUSTERS)).wait_for("configured")
     return kind
