@@ -6,7 +6,17 @@ from __future__ import annotations
 import json
 
 import pytest
-from support import IS_MANYCORE, PLATFORMS, Program, example_command, manycore_command
+from forked import forked_manycore
+from ros_support import announce, peer_node, spin
+from std_msgs.msg import String
+from support import (
+    IS_MANYCORE,
+    PLATFORMS,
+    Program,
+    example_command,
+    manycore_command,
+    peer_command,
+)
 
 pytestmark = [
     pytest.mark.integration,
@@ -76,6 +86,7 @@ def test_a_node_that_is_no_utf_8(talker, rows, start, platform):
 
 CONTROLS = "\x1b]0;evil\x07\n[/b]\u0085\u202e"
 SHOWN = r"\x1b]0;evil\x07\n[/b]\x85\u202e"
+YAML = r"\e]0;evil\a\n[/b]\N\u202e"
 
 
 def test_names_reach_no_terminal_as_control_characters(talker, rows, start, platform):
@@ -100,6 +111,35 @@ def test_names_reach_no_terminal_as_control_characters(talker, rows, start, plat
             assert SHOWN in program.output, program
     names = [row["name"] for row in rows("topic", "list")]
     assert f"/{CONTROLS}" in names
+
+
+def speak_controls() -> None:
+    """Publish a text of control characters, and have a parameter of that value."""
+    with peer_node("speaker") as node:
+        node.declare_parameter("text", CONTROLS)
+        publisher = node.create_publisher(String, "/text", 1)
+        node.create_timer(0.05, lambda: publisher.publish(String(data=CONTROLS)))
+        announce("speaking")
+        spin(node)
+
+
+def test_values_reach_no_terminal_as_control_characters(start, platform):
+    """A value that is shown by itself keeps its lines; a row of CSV stays one line."""
+    start(peer_command(speak_controls)).wait_for("speaking")
+    lines = SHOWN.split(r"\n")
+    for verb, shown in (
+        ("topic echo --once /text --field data", [*lines, "---"]),
+        ("topic echo --once /text --csv", [SHOWN]),
+        ("topic echo --once /text", [f'data: "{YAML}"', "---"]),
+        ("param get /speaker text --hide-type", lines),
+        ("param get /speaker text", [f"String value is: {lines[0]}", lines[1]]),
+    ):
+        program = start(forked_manycore(*verb.split()))
+        assert program.wait() == 0, program
+        assert program.lines == shown, program
+    asked = start(forked_manycore("topic", "echo", "--once", "/text", "--json"))
+    assert asked.wait() == 0, asked
+    assert json.loads(asked.output) == {"data": CONTROLS}
 
 
 def overwrite_text(platform: str, text: bytes, damaged: bytes) -> None:

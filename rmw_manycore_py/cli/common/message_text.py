@@ -10,7 +10,7 @@ from typing import Any
 
 import yaml
 
-from rmw_manycore_py.cli.common.printing import printable
+from rmw_manycore_py.cli.common.printing import escaped, printable
 
 # Default truncation length of `ros2 topic echo`.
 SHOWN_LENGTH = 128
@@ -94,8 +94,8 @@ def plain_to_yaml(plain: Any, *, flow_style: bool = False) -> str:
 
 
 def to_csv(message: Any, shown: Shown = BRIEFLY) -> str:
-    """Return the values of a message, comma-separated, in the order of its fields."""
-    return ",".join(map(str, _values(to_plain(message, shown))))
+    """Return the values of a message in a line, comma-separated, in the order of its fields."""
+    return ",".join(escaped(str(value)) for value in _values(to_plain(message, shown)))
 
 
 def _values(plain: Any) -> Iterator[Any]:

@@ -8,6 +8,7 @@ import random
 import pytest
 import yaml
 from geometry_msgs.msg import PoseStamped
+from rcl_interfaces.msg import Log
 from sensor_msgs.msg import CameraInfo, Image
 from std_msgs.msg import Byte, Float64MultiArray, MultiArrayDimension, MultiArrayLayout, String
 from test_msgs.msg import BoundedSequences
@@ -102,6 +103,11 @@ def test_csv_has_the_values_in_the_order_of_the_fields() -> None:
     pose = PoseStamped()
     pose.header.frame_id, pose.pose.position.y = "map", 2.5
     assert to_csv(pose) == "0,0,map,0.0,2.5,0.0,0.0,0.0,0.0,1.0"
+
+
+def test_csv_has_a_line_for_a_message() -> None:
+    log = Log(name="a\nb", msg="\x1b[31m\ttext", file="\\n", function="caf\u00e9")
+    assert to_csv(log) == r"0,0,0,a\nb,\x1b[31m\ttext,\n,café,0"
 
 
 def test_a_single_value_is_a_line() -> None:
