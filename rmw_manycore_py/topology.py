@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -118,7 +119,9 @@ def shared_memory_place() -> Path:
     """
     chosen = os.environ.get("MANYCORE_DIRECTORY")
     if chosen and not Path(chosen).is_dir():
-        message = f"MANYCORE_DIRECTORY='{chosen}' is not a directory: mkdir -m 700 {chosen}"
+        is_missing = os.path.isabs(chosen) and not Path(chosen).exists()
+        advice = f"`mkdir -p -m 700 {shlex.quote(chosen)}`" if is_missing else "choose another one"
+        message = f"MANYCORE_DIRECTORY='{chosen}' is not a directory: {advice}"
         raise ManycoreError(message, EXIT_BAD_INPUT)
     return Path(chosen or "/dev/shm")
 

@@ -86,15 +86,17 @@ def check(package: str) -> None:
     The package would access memory with an outdated layout.
     """
     import json
+    import shlex
 
     with open(f"{own_prefix()}/share/{package}/{MANIFEST}") as file:
         manifest = json.load(file)
     for name, expected in manifest["dependencies"].items():
         if (found := hash_of(name)) != expected:
+            source = shlex.quote(manifest["source"])
             raise ImportError(
                 f"package '{package}' in {own_prefix()} was built for {name} with the hash "
                 f"{expected}, but found {found or 'no such type'}: run "
-                f"`manycore interface build {manifest['source']}` again, or "
+                f"`manycore interface build {source}` again, or "
                 f"`manycore interface remove {package}`"
             )
 

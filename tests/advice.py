@@ -1,10 +1,14 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The commands that messages of this repository's programs advise, taken from their sources."""
+"""The commands that messages of this repository's programs advise: found in sources, and run."""
 
 from __future__ import annotations
 
 import ast
+import os
 import re
+import shlex
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,7 +17,8 @@ from source_texts import NATIVE, PYTHON, ROOT
 VALUE = "VALUE"  # in the place of what a message fills in
 # Texts of the command line's own help are no messages; its examples have a test of their own.
 HELP = ("examples", "option", "argument", "command", "group", "field", "Field")
-QUOTED = re.compile(r"(?<![\w'`])[`'](manycore [a-z][^`'\n]*)[`']")
+PROGRAMS = ("manycore", "chmod", "kill", "mkdir", "mount", "rm", "rosbags-convert")
+_QUOTED = re.compile(rf"`((?:{'|'.join(PROGRAMS)}) [^`\n]+)`|(?<![\w'])'(manycore [a-z][^'\n]*)'")
 ANY = re.compile(r"(?<![\w/_.-])manycore ([a-z-]+)")
 LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 # What may stand between two literals of one message.
@@ -57,6 +62,29 @@ def _is_help(node: ast.AST) -> bool:
     return False
 
 
+def quoted(text: str) -> list[str]:
+    """Return the commands that a text quotes."""
+    return [first or second for first, second in _QUOTED.findall(text)]
+
+
+def run_quoted(text: str, words: str, **placeholders: object) -> str:
+    """Run the last command of a text that begins with some words; return its output.
+
+    A shell runs it, as it would run a command that is copied there.
+    """
+    found = [command for command in quoted(text) if command.startswith(words)]
+    assert found, f"no `{words} ...` is advised by: {text}"
+    command = found[-1]
+    for name, value in placeholders.items():
+        command = command.replace(name, shlex.quote(str(value)))
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    done = subprocess.run(
+        ["sh", "-c", command], env={**os.environ, "PATH": path}, capture_output=True, text=True
+    )
+    assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
 def advised() -> set[str]:
     """Return the commands that messages quote."""
-    return {command for _, text in messages() for command in QUOTED.findall(text)}
+    return {command for _, text in messages() for command in quoted(text)}

@@ -85,7 +85,7 @@ std::string describe_lock_owner(const LockOwner & owner) {
   const std::string holds =
     "process " + status->process + " (" + status->name + ") holds it and is ";
   if (status->state == 'T') {
-    return holds + "stopped; continue it (kill -CONT " + status->process + ") or end it";
+    return holds + "stopped; continue it (`kill -CONT " + status->process + "`) or end it";
   }
   if (status->state == 't') {
     return holds + "stopped by a debugger; continue it or end it";

@@ -23,6 +23,15 @@ constexpr const char * variable = "MANYCORE_DIRECTORY";
 
 std::string quoted(const std::string & path) { return std::string(variable) + "='" + path + "' "; }
 
+/// The command with the path as a shell takes it, in backquotes.
+std::string command(const std::string & program, const std::string & path) {
+  std::string word;
+  for (const char c : path) {
+    word += c == '\'' ? "'\\''" : std::string(1, c);
+  }
+  return "`" + program + " '" + word + "'`";
+}
+
 void check_chosen(const std::string & path) {
   struct stat status {};
   if (path[0] != '/') {
@@ -30,9 +39,12 @@ void check_chosen(const std::string & path) {
   }
   const FileDescriptor fd(open(path.c_str(), O_PATH | O_CLOEXEC));
   if (!fd || fstat(fd.get(), &status) != 0) {
+    const int cause = errno;
     throw Error(
-      ErrorCode::invalid_argument, quoted(path) + "cannot be examined (" + std::strerror(errno) +
-                                     "); create it: mkdir -m 700 " + path);
+      ErrorCode::invalid_argument,
+      quoted(path) + "cannot be examined (" + std::strerror(cause) + "); " +
+        (cause == ENOENT ? "create it: " + command("mkdir -p -m 700", path)
+                         : "choose another one"));
   }
   if (!S_ISDIR(status.st_mode)) {
     throw Error(ErrorCode::invalid_argument, quoted(path) + "is not a directory");
@@ -50,7 +62,8 @@ void check_chosen(const std::string & path) {
     throw Error(
       ErrorCode::permission,
       quoted(path) + "is open to other users (mode " + mode + "): " +
-        (is_for_all ? "mkdir -m 700 " + path + "/manycore, and choose that" : "chmod 700 " + path));
+        (is_for_all ? command("mkdir -p -m 700", path + "/manycore") + ", and choose that"
+                    : command("chmod 700", path)));
   }
   if (faccessat(AT_FDCWD, path.c_str(), R_OK | W_OK | X_OK, AT_EACCESS) != 0) {
     throw Error(

@@ -88,5 +88,5 @@ def _no_room(size_bytes: int, subject: str) -> str:
     free = status.f_bavail * status.f_frsize
     return (
         f"{subject}: no room for {size_bytes} bytes in {_DIRECTORY}, which has {free} free; "
-        f"remove what fills it, or enlarge it: mount -o remount,size=1G {_DIRECTORY}"
+        f"remove what fills it, or enlarge it: `mount -o remount,size=1G {_DIRECTORY}`"
     )

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Collection, Iterator
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -118,8 +119,8 @@ def _files(path: Path, metadata: dict[str, Any] | None) -> list[Path]:
 def _refuse_other_storage(file: Path) -> None:
     if file.suffix == ".db3":
         raise ManycoreError(
-            f"{file}: expected MCAP, found rosbag2's sqlite3: pip install rosbags; "
-            "rosbags-convert --src FOLDER --dst NEW --dst-storage mcap",
+            f"{file}: expected MCAP, found rosbag2's sqlite3: `pip install rosbags`, then "
+            f"`rosbags-convert --src {shlex.quote(str(file.parent))} --dst NEW --dst-storage mcap`",
             EXIT_BAD_INPUT,
         )
     if file.suffix == ".zstd":

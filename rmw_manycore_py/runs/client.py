@@ -102,7 +102,7 @@ class Client:
         pid = self._run.info.get("pid", "unknown")
         return ManycoreError(
             f"the supervisor of platform '{self._run.platform}' (pid {pid}) has not answered for "
-            f"{ANSWER_TIMEOUT_S:g} s: is it stopped? kill -CONT {pid}"
+            f"{ANSWER_TIMEOUT_S:g} s: is it stopped? `kill -CONT {pid}`"
         )
 
 

@@ -73,7 +73,7 @@ def _check_parent(parent: Path) -> None:
         return
     advice = "choose another MANYCORE_STATE"
     if status.st_uid == os.geteuid():
-        advice = f"chmod go-w {shlex.quote(str(parent))}"
+        advice = f"`chmod go-w {shlex.quote(str(parent))}`"
     raise ManycoreError(
         f"{parent}: expected a directory in which no other user can replace the runs of this "
         f"user, found {_owner_and_mode(status)}; {advice}"
@@ -116,7 +116,7 @@ def _advice(directory: Path, status: os.stat_result) -> str:
     if status.st_uid != os.geteuid():
         return "choose another MANYCORE_STATE"
     if not stat.S_ISDIR(status.st_mode):
-        return f"rm {path}, or choose another MANYCORE_STATE"
+        return f"`rm {path}`, or choose another MANYCORE_STATE"
     if status.st_mode & stat.S_ISVTX:  # a directory that is meant for all users, as /tmp is
-        return f"mkdir -m 700 {path}/manycore, and choose that as MANYCORE_STATE"
-    return f"chmod 700 {path}"
+        return f"`mkdir -p -m 700 {path}/manycore`, and choose that as MANYCORE_STATE"
+    return f"`chmod 700 {path}`"

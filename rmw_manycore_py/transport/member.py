@@ -63,7 +63,7 @@ class Member(Closing):
         process, name, policies = self._opened(), checked_topic(topic), native_qos(qos)
         with native_errors(name):
             native = process.publisher(name, TYPES[elements], policies)
-        return self._added(Publisher(name, elements, process, native))
+        return self._added(Publisher(name, elements, self.platform, process, native))
 
     def subscription(
         self, topic: str, dtype: type[Scalar] | np.dtype[Scalar], *, qos: Qos | int = 10

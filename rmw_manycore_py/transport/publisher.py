@@ -33,11 +33,13 @@ class Publisher(Closing, Generic[Scalar]):
         self,
         topic: str,
         dtype: np.dtype[Scalar],
+        platform: str,
         process: _transport.Process,
         native: _transport.Publisher,
     ) -> None:
         self.topic = topic
         self.dtype = dtype
+        self._platform = platform
         self._process = process
         self._native: _transport.Publisher | None = native
 
@@ -85,7 +87,7 @@ class Publisher(Closing, Generic[Scalar]):
                     raise TransportTimeoutError(
                         f"{self.topic}: {found} of {count} subscriptions after {timeout_s:g} s; "
                         "they match by topic, type and QoS: see "
-                        f"`manycore topic info -v {self.topic}`"
+                        f"`manycore topic info -v --platform {self._platform} {self.topic}`"
                     )
 
     def close(self) -> None:

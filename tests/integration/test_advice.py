@@ -1,23 +1,28 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Messages that name a command: the command is run as quoted, and the state is cured.
 
-tests/integration/test_clean.py does so for `manycore clean`, which cures damage of every kind.
+Tests of the part that prints such a message do so, too (`run_quoted`). For `manycore clean`, which
+cures damage of every kind, tests/integration/test_clean.py does.
 """
 
 from __future__ import annotations
 
 import json
+import os
+import re
 import shlex
 import signal
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from advice import QUOTED
+from advice import quoted, run_quoted
 from forked import forked_example, forked_manycore
+from own_shm import can_mount
 from processes import kill_all
 from support import IS_MANYCORE, Program, manycore_command, wait_until
 
+from rmw_manycore_py.mapfile.installed import installed_mapfiles
 from rmw_manycore_py.runs.directory import runs_of
 
 pytestmark = [
@@ -50,7 +55,7 @@ def follow(manycore) -> Callable[[Program, str], Program]:
     """Run the command that a program's last message quotes and that begins with some words."""
 
     def run(program: Program, words: str) -> Program:
-        found = [one for one in QUOTED.findall(program.output) if one.startswith(words)]
+        found = [one for one in quoted(program.output) if one.startswith(words)]
         assert found, f"no `{words} ...` is advised by {program}"
         return manycore(*shlex.split(found[-1])[1:])
 
@@ -93,6 +98,15 @@ def test_a_run_in_the_background_is_stopped(up, manycore) -> None:
     up()
 
 
+def test_a_stopped_supervisor_is_continued(up, manycore, platform) -> None:
+    up()
+    (run,) = runs_of(platform)
+    os.kill(int(run.info["pid"]), signal.SIGSTOP)
+    silent = manycore("stop", status=1)
+    run_quoted(silent.output, "kill -CONT")
+    manycore("stop")
+
+
 def test_a_node_is_restarted_and_its_log_shown(up, manycore, follow) -> None:
     up()
     manycore("stop", "typed")
@@ -104,7 +118,7 @@ def test_a_node_is_restarted_and_its_log_shown(up, manycore, follow) -> None:
 
 def test_a_node_is_given_a_terminal(up, start, manycore) -> None:
     up()
-    (command,) = QUOTED.findall(manycore("attach", "plain", status=1).lines[-1])
+    (command,) = quoted(manycore("attach", "plain", status=1).lines[-1])
     attached = start(manycore_command(*shlex.split(command)[1:]))
     wait_until(lambda: has_terminal(manycore, "plain"), "it has a terminal")
     attached.signal(signal.SIGTERM)
@@ -133,7 +147,7 @@ def test_a_trace_is_stopped_saved_or_discarded(start, manycore, follow, tmp_path
     follow(unsaved, "manycore trace start --discard")
     record()
     manycore("trace", "stop")
-    (save,) = (one for one in QUOTED.findall(unsaved.output) if " save " in one)
+    (save,) = (one for one in quoted(unsaved.output) if " save " in one)
     file = tmp_path / "trace.json"
     manycore(*shlex.split(save.replace("FILE", str(file)))[1:])
     assert file.exists()
@@ -161,12 +175,25 @@ def test_containers_and_lifecycle_nodes_are_listed(start, manycore, follow, comm
     follow(manycore(*command, status=1), advised)
 
 
+@pytest.mark.skipif(not can_mount(), reason="needs a mount namespace, to hide files")
+def test_the_doctor_tells_which_mapfile_is_missing(start, tmp_path) -> None:
+    mapfiles = installed_mapfiles()["whill"].parent
+    script = f'mount -t tmpfs tmpfs {mapfiles} && "$0" whill course "$1"; "$0" doctor'
+    manycore = manycore_command()[0]
+    command = ["unshare", "--mount", "sh", "-c", script, manycore, tmp_path / "course"]
+    program = start([str(word) for word in command])
+    program.wait()
+    assert "whill.yaml is not installed" in program.output
+    assert "manycore doctor" in quoted(program.output)
+    assert re.search(r"^failure +mapfiles: no .*whill\.yaml", program.output, re.M), program
+
+
 def test_a_dead_platform_is_removed(start, manycore, platform) -> None:
     """Without names, `manycore clean` would also remove what other tests are looking at."""
     start(forked_example("talker")).wait_for("Publishing")
     kill_all(platform)
     status = manycore("status", "--platform", platform)
-    (command,) = QUOTED.findall(status.output)
+    (command,) = quoted(status.output)
     assert command == "manycore clean"
     manycore("clean", platform)
     assert "no platform" in manycore("status", "--platform", platform, status=1).output

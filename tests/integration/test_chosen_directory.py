@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from advice import quoted, run_quoted
 from support import (
     IS_MANYCORE,
     MAPFILES,
@@ -24,8 +25,8 @@ pytestmark = [
 
 @pytest.fixture
 def directory(tmp_path_factory) -> Path:
-    path = tmp_path_factory.mktemp("chosen")
-    path.chmod(0o700)
+    path: Path = tmp_path_factory.mktemp("chosen") / "by the user's choice"
+    path.mkdir(mode=0o700)
     return path
 
 
@@ -59,21 +60,39 @@ def test_nodes_of_a_run_inherit_it(start, directory):
 def test_the_doctor_shows_it(directory, platform):
     assert str(directory) in manycore(directory, platform, "doctor").stdout
     directory.chmod(0o755)
-    assert f"chmod 700 {directory}" in manycore(directory, platform, "doctor").stdout
+    run_quoted(manycore(directory, platform, "doctor").stdout, "chmod 700")
+    link = directory.with_name("link")
+    link.symlink_to(directory)
+    assert "chmod" not in manycore(link, platform, "doctor").stdout
 
 
 @pytest.mark.parametrize("words", [("status",), ("topic", "list"), ("clean",), ("doctor",)])
 def test_one_that_is_not_there_is_refused(directory, platform, words):
-    missing = directory / "missing"
+    missing = directory / "is" / "missing"
     answer = manycore(missing, platform, *words)
     assert answer.returncode in {1, 2}, answer
-    lines = [line for line in (answer.stdout + answer.stderr).splitlines() if "mkdir" in line]
-    assert f"mkdir -m 700 {missing}" in lines[0]
     assert "Traceback" not in answer.stderr
+    run_quoted(answer.stdout + answer.stderr, "mkdir")
+    there = manycore(missing, platform, *words)
+    assert "MANYCORE_DIRECTORY" not in there.stdout + there.stderr
 
 
-def test_a_node_is_refused(start, directory):
-    directory.chmod(0o755)
+@pytest.mark.parametrize("words", [("status",), ("topic", "list")])
+def test_one_that_cannot_be_made_there_is_not_advised_to_be_made(directory, platform, words):
+    file = directory / "file"
+    file.touch()
+    answer = manycore(file, platform, *words)
+    assert "is not a directory" in answer.stderr
+    assert quoted(answer.stderr) == []
+
+
+@pytest.mark.parametrize(("mode", "advice"), [(0o755, "chmod 700"), (0o1777, "mkdir")])
+def test_a_node_is_refused(start, directory, mode, advice):
+    directory.chmod(mode)
     node = start(example_command("talker"), MANYCORE_DIRECTORY=str(directory))
     assert node.wait() == 1, node
-    assert f"chmod 700 {directory}" in node.output, node
+    run_quoted(node.output, advice)
+    chosen = directory / "manycore" if advice == "mkdir" else directory
+    talker = start(example_command("talker"), MANYCORE_DIRECTORY=str(chosen))
+    talker.wait_for("Publishing")
+    assert talker.stop_node()

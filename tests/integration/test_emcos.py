@@ -327,5 +327,5 @@ def test_an_unsuitable_directory_is_refused(
     tmp_path: Path, platform: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("MANYCORE_DIRECTORY", f"{tmp_path}/missing")
-    with pytest.raises(TransportError, match=r"MessageSender 't': .* mkdir -m 700"):
+    with pytest.raises(TransportError, match=r"MessageSender 't': .* `mkdir -p -m 700"):
         emcos.MessageSender("t", platform=platform, timeout_s=0)

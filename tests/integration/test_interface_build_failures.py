@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from advice import quoted, run_quoted
 from building import TINY, interface, write_definitions
 from installing import READ_ONLY, can_mount
 from support import IS_MANYCORE, manycore_command, wait_until
@@ -32,7 +33,7 @@ def env(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
 
 @pytest.fixture
 def sources(tmp_path: Path) -> Path:
-    return tmp_path / "sources"
+    return tmp_path / "the sources"
 
 
 def imported(module: str, env: dict[str, str]) -> subprocess.CompletedProcess[str]:
@@ -100,6 +101,30 @@ def test_a_changed_package_is_built_again_with_those_that_contain_it(env, source
     assert list(Path(env["MANYCORE_INTERFACES"]).glob("*/store/*")) == []
     gone = interface("remove", "user_msgs", env=env, status=1)
     assert "package 'user_msgs' was not built here; built: none" in gone.stderr
+
+
+def test_what_a_newer_package_elsewhere_outdates_is_built_again(
+    env, sources, tmp_path, monkeypatch
+) -> None:
+    write_definitions(sources, {**BASE, **USER})
+    interface("build", sources, env=env)
+    newer = write_definitions(tmp_path / "newer", {"base_msgs/msg/Base.msg": "float64 number\n"})
+    interface("build", newer, env={**env, "MANYCORE_INTERFACES": str(tmp_path / "other")})
+    (prefix,) = (tmp_path / "other").glob("*/current")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(prefix))
+    monkeypatch.setenv("PYTHONPATH", str(prefix / "python"))
+    refused = imported("user_msgs", dict(os.environ))
+    doctor = subprocess.run(manycore_command("doctor"), capture_output=True, text=True).stdout
+    assert quoted(refused.stderr) == [
+        f"manycore interface build '{sources}/user_msgs'",
+        "manycore interface remove user_msgs",
+    ]
+    assert set(quoted(doctor)) > {*quoted(refused.stderr), "manycore interface remove base_msgs"}
+    run_quoted(refused.stderr, "manycore interface build")
+    assert imported("user_msgs", dict(os.environ)).returncode == 0
+    run_quoted(doctor, "manycore interface remove base_msgs")
+    doctor = subprocess.run(manycore_command("doctor"), capture_output=True, text=True).stdout
+    assert not [command for command in quoted(doctor) if "interface" in command]
 
 
 def test_a_package_that_does_not_compile_is_named_and_none_is_seen(env, sources) -> None:

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
+from advice import quoted
 from support import (
     IS_MANYCORE,
     MAPFILES,
@@ -86,7 +87,14 @@ def replayed(start: Any, recording: Path, *options: str, status: int = 0) -> dic
     return figures
 
 
-def test_every_scan_of_a_drive_is_answered(start, offload, street, tmp_path):
+def test_every_scan_of_a_drive_is_answered(start, platform, street, tmp_path):
+    """By the matcher that the replay advises to start."""
+    alone = start(manycore_command("ndt", "replay", street / "drive.npz", "--timeout", "1"))
+    assert alone.wait(LONG_S) == 1
+    (command,) = quoted(alone.output)
+    assert command == "manycore run ndt_offload"
+    offload = start(manycore_command(*command.split()[1:]), directory=tmp_path)
+    offload.wait_for("ndt_scan_matcher started")
     files = ("--csv", str(tmp_path / "scans.csv"))
     figures = replayed(start, street / "drive.npz", *files)
     assert (figures["scans"], figures["answered"]) == (10, 10)

@@ -7,6 +7,8 @@ import os
 import subprocess
 
 import pytest
+from advice import run_quoted
+from building import write_definitions
 from recordings import NS_PER_S, START_NS, string_row, text_message, write_texts
 from ros_support import peer_node, spin_until, type_of
 from speakers import hear
@@ -23,16 +25,20 @@ pytestmark = [
     pytest.mark.needs("mcap"),
 ]
 
-ON_SMALL_DISK = """
-mount -t tmpfs -o size=3m tmpfs "$0" && "$@"
+NIX = {"nix_msgs/msg/Nix.msg": "string text\n"}
+NIX_HASH = "RIHS01_f075c58ee7960f749a601ae54cbf414fc697bb3963a1313a6106d5ec98bd1ae7"
+ON_SMALL_DISK = r"""
+mount -t tmpfs -o size=3m tmpfs "$0" && "$@" 2>"$0.errors"
 status=$?
-"$1" bag info "$0"/*.mcap
+cat "$0.errors" >&2
+PATH=$(dirname "$1"):$PATH
+eval "$(sed -n 's/.*`\(manycore bag info .*\)`.*/\1/p' "$0.errors")"
 exit $status
 """
 
 
 def on_small_disk(directory: object, *command: object) -> list[str]:
-    """Return a command that runs with its directory on a small disk, then lists the disk."""
+    """Return a command that runs with its directory on a small disk, then as its error advises."""
     return ["unshare", "--mount", "sh", "-c", ON_SMALL_DISK, str(directory), *map(str, command)]
 
 
@@ -46,8 +52,10 @@ def can_mount(directory: object = "/mnt") -> bool:
 @pytest.mark.skipif(not can_mount(), reason="needs root and a mount namespace")
 def test_a_full_disk_ends_the_recording_and_spares_what_is_there(start, tmp_path) -> None:
     start(peer_command(say_large, "/large"))
-    record = manycore_command("topic", "record", "/large", "-o", tmp_path / "a.mcap")
-    recorder = start(on_small_disk(tmp_path, *record))
+    disk = tmp_path / "the user's disk"
+    disk.mkdir()
+    record = manycore_command("topic", "record", "/large", "-o", disk / "a.mcap")
+    recorder = start(on_small_disk(disk, *record))
     assert recorder.wait() == 1, recorder
     held = recorder.wait_for(
         r"a\.mcap: cannot be written: No space left on device; it holds (\d+) messages"
@@ -85,10 +93,13 @@ def test_nothing_to_record_is_said(start, tmp_path) -> None:
     assert not (tmp_path / "a.mcap").exists()
 
 
-def test_a_type_without_definition_is_recorded_and_played_inside(start, platform, tmp_path) -> None:
+def test_a_type_without_definition_is_recorded_and_played_inside(
+    start, platform, tmp_path, monkeypatch
+) -> None:
+    monkeypatch.setenv("MANYCORE_INTERFACES", str(tmp_path / "built"))
     bag = tmp_path / "a.mcap"
     with Process(platform, label="strange") as process:
-        publisher = process.publisher("/strange", "nix_msgs/msg/Nix", Qos())
+        publisher = process.publisher("/strange", "nix_msgs/msg/Nix", Qos(), type_hash=NIX_HASH)
         recorder = start(manycore_command("topic", "record", "/strange", "-o", bag))
         recorder.wait_for("type nix_msgs/msg/Nix is not installed.*manycore interface build")
         wait_until(publisher.matched, "the recorder listens")
@@ -101,7 +112,10 @@ def test_a_type_without_definition_is_recorded_and_played_inside(start, platform
     outside = start(manycore_command("topic", "play", bag, "--outside"))
     assert outside.wait() == 1
     assert "nix_msgs" in outside.output
-    assert "manycore interface build" in outside.output
+    sources = write_definitions(tmp_path / "sources", NIX)
+    run_quoted(outside.output, "manycore interface build", PATH=sources)
+    again = start(manycore_command("topic", "play", bag, "--outside"))
+    assert again.wait() == 0, again
 
 
 def test_a_topic_with_two_types_is_left_out(start, platform, tmp_path) -> None:

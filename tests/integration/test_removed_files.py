@@ -7,6 +7,7 @@ import shutil
 import sys
 
 import pytest
+from advice import run_quoted
 from processes import has_receive_threads
 from support import PLATFORMS, wait_until
 
@@ -27,6 +28,7 @@ def test_nodes_end_and_say_why_and_new_ones_meet(start, platform):
     for program in old:
         assert program.wait() != 0, program
         assert "restart this process" in program.output
+        assert " logout: " in run_quoted(program.output, "manycore doctor")
     wait_until(lambda: not (PLATFORMS / platform).exists(), "the old ones leave nothing")
     start(talker)
     start(listener, 2).wait_for("I heard")

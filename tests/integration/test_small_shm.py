@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 import re
+import subprocess
 import sys
 
 import pytest
+from advice import run_quoted
 from own_shm import can_mount, own_shm_command
+from ros_support import announce
 from support import (
     IS_MANYCORE,
     MAPFILES,
@@ -16,6 +19,7 @@ from support import (
     environment,
     example_command,
     manycore_command,
+    peer_command,
     unique_platform,
 )
 
@@ -133,6 +137,19 @@ def test_images_of_1080p(start_small):
     publisher = start_small(64, [sys.executable, "-c", IMAGES, IMAGES])
     assert publisher.wait(4 * TIMEOUT_S) == 0, publisher
     assert "all images arrived" in publisher.output, publisher
+
+
+def enlarge_as_the_doctor_advises() -> None:
+    def consult() -> str:
+        return subprocess.run(manycore_command("doctor"), capture_output=True, text=True).stdout
+
+    run_quoted(consult(), "mount")
+    assert "mount" not in consult()
+    announce("cured")
+
+
+def test_the_doctor_enlarges_it(start_small):
+    start_small(16, peer_command(enlarge_as_the_doctor_advises)).wait_for("cured")
 
 
 def test_hardly_any_room(start_small):

@@ -7,12 +7,14 @@ Driving quality is not tested here: it depends on the machine; see `manycore ben
 from __future__ import annotations
 
 import json
+import shlex
 import signal
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
+from advice import quoted, run_quoted
 from support import IS_MANYCORE, TIMEOUT_S, manycore_command
 
 pytestmark = [
@@ -99,10 +101,25 @@ def test_an_interrupted_drive_leaves_nothing(start, platform, course, number):
     assert "Traceback" not in drive.output
 
 
-def test_a_stack_that_is_not_there(start, course):
-    drive = start(manycore_command("whill", "drive", "--course", course, "--timeout", "1"))
-    assert drive.wait(LONG_S) == 1
-    assert "nothing publishes /whill/controller/cmd_vel; start the stack first" in drive.output
+@pytest.mark.long
+def test_neither_course_nor_stack(start, platform, tmp_path):
+    """The errors name the commands that make the one and start the other."""
+    course = tmp_path / "the user's course"
+    drive = ("whill", "drive", "--course", course)
+    no_course = start(manycore_command(*drive))
+    assert no_course.wait(LONG_S) == 2
+    run_quoted(no_course.output, "manycore whill course")
+    (course / "streets.npz").write_text("no streets")
+    no_streets = start(manycore_command(*drive))
+    assert no_streets.wait(LONG_S) == 2
+    run_quoted(no_streets.output, "manycore whill course")
+    no_stack = start(manycore_command(*drive, "--timeout", "1"))
+    assert no_stack.wait(LONG_S) == 1
+    assert "nothing publishes /whill/controller/cmd_vel; start the stack first" in no_stack.output
+    (command,) = quoted(no_stack.output)
+    stack = start(manycore_command(*shlex.split(command)[1:]))
+    assert driven(start, course, "--timeout", str(LONG_S), "--duration", "2")["driven_m"] > 0
+    assert stack.stop() == 0, stack
 
 
 def test_a_trajectory_that_cannot_be_driven_ends_the_run(start, platform, course, tmp_path):

@@ -122,8 +122,13 @@ TEST_CASE("an unsuitable chosen directory is refused, in one line that says what
   const std::string path = chosen.path();
   SUBCASE("not there") {
     setenv(variable, (path + "/no").c_str(), 1);
-    check_refused("mkdir -m 700 " + path + "/no", ErrorCode::invalid_argument);
-    CHECK(refusal_of([] { platform_names(); }).says("mkdir -m 700"));
+    const std::string advice = "`mkdir -p -m 700 '" + path + "/no'`";
+    check_refused(advice, ErrorCode::invalid_argument);
+    CHECK(refusal_of([] { platform_names(); }).says(advice));
+  }
+  SUBCASE("behind a file") {
+    setenv(variable, "/etc/passwd/no", 1);
+    check_refused("(Not a directory); choose another one", ErrorCode::invalid_argument);
   }
   SUBCASE("not absolute") {
     setenv(variable, "chosen", 1);
@@ -135,11 +140,11 @@ TEST_CASE("an unsuitable chosen directory is refused, in one line that says what
   }
   SUBCASE("open to others") {
     chmod(path.c_str(), 0750);
-    check_refused("(mode 750): chmod 700 " + path, ErrorCode::permission);
+    check_refused("(mode 750): `chmod 700 '" + path + "'`", ErrorCode::permission);
   }
   SUBCASE("for all users, as /tmp is") {
     chmod(path.c_str(), 01777);
-    check_refused("(mode 777): mkdir -m 700 " + path, ErrorCode::permission);
+    check_refused("(mode 777): `mkdir -p -m 700 '" + path, ErrorCode::permission);
   }
   SUBCASE("another user's") {
     if (geteuid() == 0) {

@@ -1,24 +1,30 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Commands that messages advise are complete: they can be run as they are quoted.
 
-tests/integration/test_advice.py runs them in the states whose messages name them.
+Tests of tests/integration run them in the states whose messages name them (`follow`, `cure`).
 """
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
+import shutil
+import sys
+from pathlib import Path
 
 import click
 import pytest
-from advice import advised, messages
+from advice import PROGRAMS, advised, messages
 from doc_commands import parse
 
 from rmw_manycore_py.cli.main import VERBS
 
 pytestmark = pytest.mark.unit
 
-CALL = re.compile(rf"(?<![\w/.-])manycore (?:{'|'.join(VERBS)})\b")
+CALL = re.compile(
+    rf"(?<![\w/.-])(?:manycore (?:{'|'.join(VERBS)})\b|(?:{'|'.join(PROGRAMS[1:])}) [-\d])"
+)
 QUOTE = re.compile(r"[`'\"(]$")
 # Names of programs, without what a call of them needs.
 NOUNS = {"manycore run", "manycore up", "manycore interface build"}
@@ -33,8 +39,13 @@ def test_every_command_that_is_quoted_can_be_called() -> None:
     wrong = []
     commands = advised() - NOUNS
     for command in commands:
+        program, *arguments = shlex.split(command)
+        if program != "manycore":
+            path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+            assert shutil.which(program, path=path), f"a message advises {command}"
+            continue
         try:
-            parse(shlex.split(command)[1:])
+            parse(arguments)
         except (click.ClickException, AssertionError) as error:
             wrong.append((command, getattr(error, "message", str(error))))
     assert len(commands) > 20

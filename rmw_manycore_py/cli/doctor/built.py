@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator
 
 from rmw_manycore_interfaces import hash_of
@@ -28,16 +29,17 @@ def check_built() -> Iterator[Finding]:
     names = ", ".join(packages)
     yield Finding(SUBJECT, Verdict.OK, f"{names} in {store.directory}")
     for package, manifest in packages.items():
-        if reason := _why_unused(manifest):
-            remove = f"`manycore interface remove {package}`"
-            advice = f"`manycore interface build {manifest.source}`, or {remove}"
-            yield Finding(SUBJECT, Verdict.WARNING, f"{package}: {reason}", advice)
+        remove = f"`manycore interface remove {package}`"
+        if ament.is_installed(package):
+            found = f"programs use the package installed in {ament.package_prefix(package)}"
+            yield Finding(SUBJECT, Verdict.WARNING, f"{package}: {found}", remove)
+        elif changed := _changed(manifest):
+            found = f"{changed} has changed since the package was built"
+            advice = f"`manycore interface build {shlex.quote(manifest.source)}`, or {remove}"
+            yield Finding(SUBJECT, Verdict.WARNING, f"{package}: {found}", advice)
 
 
-def _why_unused(manifest: Manifest) -> str | None:
-    if ament.is_installed(manifest.package):
-        return f"programs use the package installed in {ament.package_prefix(manifest.package)}"
-    for name, expected in manifest.dependencies.items():
-        if hash_of(name) != expected:
-            return f"{name} has changed since the package was built"
-    return None
+def _changed(manifest: Manifest) -> str | None:
+    """Return a type of another package that a built package was not built for."""
+    needed = manifest.dependencies.items()
+    return next((name for name, expected in needed if hash_of(name) != expected), None)

@@ -29,6 +29,7 @@ FILES = {
     "receive thread": "lib/rmw_manycore/manycore_receive_thread",
     "scan matching worker": "lib/rmw_manycore/manycore_ndt_worker",
     "stand-ins": "lib/rmw_manycore/standin/librmw_fastrtps_cpp.so",
+    "mapfiles": "share/rmw_manycore/mapfiles/whill.yaml",
     "ament index": "share/ament_index/resource_index/rmw_typesupport/rmw_manycore",
 }
 

@@ -6,8 +6,10 @@ from __future__ import annotations
 import ctypes
 import os
 import platform
+import shlex
 import stat
 from collections.abc import Iterator
+from pathlib import Path
 
 import posix_ipc
 
@@ -49,11 +51,14 @@ def _shared_memory_size() -> Finding:
     place = shared_memory_place()
     status = os.statvfs(place)
     size, free = status.f_blocks * status.f_frsize, status.f_bavail * status.f_frsize
-    advice = (
-        f"mount -o remount,size=1G {place} (a container: --shm-size=1g), or remove what fills it"
-    )
+    enlarge = f"`mount -o remount,size=1G {shlex.quote(_mount_point(place))}`"
+    advice = f"{enlarge} (a container: --shm-size=1g), or remove what fills it"
     found = f"{size_text(free)} free of {size_text(size)}"
     return advised(str(place), free >= USEFUL_SHARED_MEMORY_BYTES, found, advice)
+
+
+def _mount_point(path: Path) -> str:
+    return next(str(place) for place in (path, *path.parents) if os.path.ismount(place))
 
 
 def _posix_shared_memory() -> Finding:
@@ -71,15 +76,19 @@ def _posix_shared_memory() -> Finding:
 
 def _user_directory() -> Finding:
     path = platforms_directory()
+    if os.environ.get("MANYCORE_DIRECTORY"):
+        path = path.resolve()  # a user may choose a link
     try:
         status = path.lstat()
     except FileNotFoundError:
         return Finding("platform directory", Verdict.OK, f"{path}: created at the first start")
     mode = stat.S_IMODE(status.st_mode)
-    is_private = stat.S_ISDIR(status.st_mode) and status.st_uid == os.getuid() and mode == 0o700
+    is_own = stat.S_ISDIR(status.st_mode) and status.st_uid == os.geteuid()
     found = f"{path}, owner {status.st_uid}, mode {mode:o}"
-    advice = f"remove it, or: chmod 700 {path} and chown {os.getuid()} {path}"
-    return judged("platform directory", is_private, found, advice)
+    advice = (
+        f"`chmod 700 {shlex.quote(str(path))}`" if is_own else "remove it (or ask its owner to)"
+    )
+    return judged("platform directory", is_own and mode == 0o700, found, advice)
 
 
 def _cpus() -> Finding:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shlex
 import threading
 import time
 from collections import deque
@@ -77,7 +78,7 @@ class WritingThread:
         raise ManycoreError(
             f"{self._output.path}: cannot be written: {self.failure.strerror}; it holds "
             f"{self._output.whole_messages} messages up to then, without an index: "
-            f"`manycore bag info {self._output.path}`"
+            f"`manycore bag info {shlex.quote(str(self._output.path))}`"
         ) from self.failure
 
     def _run(self) -> None:

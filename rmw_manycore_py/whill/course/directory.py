@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
@@ -55,7 +56,7 @@ def read_course(directory: Path) -> Course:
     if not (directory / TRAJECTORY).is_file():
         raise ManycoreError(
             f"{directory}: expected a course, found no {TRAJECTORY}; make one: "
-            f"`manycore whill course {directory}`",
+            f"`manycore whill course {shlex.quote(str(directory))}`",
             EXIT_BAD_INPUT,
         )
     trajectory = read_trajectory(directory / TRAJECTORY, WHEEL_BASE_M, MAX_SPEED_M_S)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shlex
 from itertools import pairwise
 from pathlib import Path
 
@@ -58,7 +59,7 @@ def load_streets(path: Path) -> Street:
     except UNREADABLE as error:
         raise ManycoreError(
             f"{path}: expected the streets of a course, found: {what_is_wrong(error)}; make the "
-            f"course again: `manycore whill course {path.parent}`",
+            f"course again: `manycore whill course {shlex.quote(str(path.parent))}`",
             EXIT_BAD_INPUT,
         ) from error
     return Street(*columns)

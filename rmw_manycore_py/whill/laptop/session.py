@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import signal
 import threading
 import time
@@ -189,9 +190,10 @@ class Drive:
     def _reason_for_standing(self) -> str:
         waited = f"the vehicle has not moved within {self._options.timeout_s:g} s"
         if not self._node.count_publishers(topics.CMD_VEL):
+            mapfile = shlex.quote(f"{self._options.course}/whill.yaml")
             return (
                 f"{waited}: nothing publishes {topics.CMD_VEL}; start the stack first, in the same "
-                f"ROS_DOMAIN_ID: `manycore run {self._options.course}/whill.yaml`, or give --run"
+                f"ROS_DOMAIN_ID: `manycore run {mapfile}`, or give --run"
             )
         if not self._operator.pointed:
             return (

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 import yaml
+from advice import run_quoted
 from bag_support import Bag
 from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.writer import CompressionType, IndexType, Writer
@@ -224,8 +225,17 @@ def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
     for text in ("a: 1", "a: 2024-13-01", "[" * 3000, "\0"):
         (tmp_path / "b" / "metadata.yaml").write_text(text)
         assert "rosbag2_bagfile_information" in refusal(tmp_path / "b")
-    assert "rosbags-convert" in refusal(tmp_path / "old.db3")
     assert "zstd -d" in refusal(tmp_path / "a.mcap.zstd")
+
+
+def test_a_recording_in_sqlite_is_converted(tmp_path: Path) -> None:
+    with Bag(tmp_path / "the user's bag") as bag:
+        for number in range(3):
+            bag.write("/text", bag.make("std_msgs/String", f"{number}"), number)
+    new = tmp_path / "new"
+    run_quoted(refusal(bag.path), "rosbags-convert", NEW=new)
+    with Recording(new) as recording:
+        assert recording.span.messages == 3
 
 
 def test_a_missing_file_of_a_folder_is_named(tmp_path: Path) -> None:

@@ -57,6 +57,7 @@ def test_packages_that_programs_do_not_use_are_warned_of() -> None:
     assert changed.found == f"own_msgs: {HEADER} has changed since the package was built"
     assert changed.advice.startswith("`manycore interface build /src`, or ")
     assert hidden.found.startswith("std_msgs: programs use the package installed in ")
+    assert hidden.advice == "`manycore interface remove std_msgs`"
     assert {changed.verdict, hidden.verdict} == {Verdict.WARNING}
 
 
