@@ -33,6 +33,12 @@ from rmw_manycore_py.runs.lines import Message, encoded
 _CREDENTIALS = struct.Struct("3i")
 # More than one person's shells; keeps file descriptors free for nodes.
 MAX_CLIENTS = 64
+# Places for further clients, which are only served if they ask to stop.
+STOP_PLACES = 4
+_FULL = (
+    f"{MAX_CLIENTS} clients are connected to this run already: end some of them; "
+    "`manycore stop` is still served"
+)
 _GOODBYE_S = 1.0
 
 
@@ -81,14 +87,14 @@ class Control:
                 self._turn_away()
             return
         try:
-            if len(self._connections) >= MAX_CLIENTS:
-                _refuse(client, f"{MAX_CLIENTS} clients are connected to this run already")
-            elif not _is_allowed(client):
+            if not _is_allowed(client):
                 client.close()
-            else:
-                self._connections.append(
-                    Connection(client, self._runner, self._serve, self._connections.remove)
-                )
+                return
+            if len(self._connections) == MAX_CLIENTS + STOP_PLACES:
+                self._connections[MAX_CLIENTS].finish({"error": _FULL})
+            self._connections.append(
+                Connection(client, self._runner, self._serve, self._connections.remove)
+            )
         except OSError:  # the client has gone, or the selector has no room
             client.close()
 
@@ -97,7 +103,7 @@ class Control:
         self._spare.close()
         with suppress(OSError):
             client, _ = self._listener.accept()
-            _refuse(client, "the supervisor is out of file descriptors (ulimit -n)")
+            _refuse(client)
         with suppress(OSError):
             self._spare = socket.socket()
 
@@ -106,6 +112,8 @@ class Control:
             _type(connection, Typing.of(message))
             return
         request = request_of(message)
+        if not isinstance(request, Stop) and connection in self._connections[MAX_CLIENTS:]:
+            raise ManycoreError(_FULL)
         match request:
             case State():
                 connection.finish({"nodes": [_row(node) for node in self._runner.nodes]})
@@ -158,11 +166,12 @@ class Control:
         _type(connection, Typing(size=request.size))
 
 
-def _refuse(client: socket.socket, reason: str) -> None:
-    """Refuse a client; it may be `manycore stop`, so the reason names the signal that does that."""
+def _refuse(client: socket.socket) -> None:
+    """Refuse a client; it may be `manycore stop`, so the error names the signal that stops."""
+    error = "the supervisor is out of file descriptors (ulimit -n)"
     with client:
         client.setblocking(False)
-        client.send(encoded({"error": f"{reason}; kill {os.getpid()} stops the run"}))
+        client.send(encoded({"error": f"{error}; `kill {os.getpid()}` stops the run"}))
 
 
 def _is_allowed(client: socket.socket) -> bool:

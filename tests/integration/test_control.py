@@ -10,7 +10,6 @@ import json
 import os
 import random
 import resource
-import signal
 import socket
 from collections.abc import Iterator
 from contextlib import ExitStack, suppress
@@ -18,10 +17,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from advice import run_quoted
 from processes import is_asleep
 from support import IS_MANYCORE, TIMEOUT_S, Program, manycore_command, wait_until
 
-from rmw_manycore_py.launch.control import MAX_CLIENTS
+from rmw_manycore_py.launch.control import MAX_CLIENTS, STOP_PLACES
 from rmw_manycore_py.runs.directory import RunDirectory, runs_of
 from rmw_manycore_py.runs.lines import MAX_LINE_BYTES
 
@@ -35,6 +35,7 @@ nodes:
   stays: {cluster: 1, command: [sleep, '1000'], ros_arguments: false}
   typed: {cluster: 1, command: [cat], ros_arguments: false, terminal: true}
 """
+STATE = b'{"do": "state"}'
 DEPTH = 100_000
 HUGE = "9" * 5000
 RANDOM_REQUESTS = 3000
@@ -143,7 +144,7 @@ def asked(platform: str, line: bytes) -> list[dict[str, Any]]:
 
 
 def pids(platform: str) -> dict[str, int]:
-    (answer,) = asked(platform, b'{"do": "state"}')
+    (answer,) = asked(platform, STATE)
     return {node["name"]: node["pid"] for node in answer["nodes"]}
 
 
@@ -240,35 +241,36 @@ def test_thousands_of_clients(run, platform) -> None:
         with ExitStack() as stack:
             clients = [stack.enter_context(Client(platform)) for _ in range(2000)]
             for client in clients[MAX_CLIENTS:]:
+                client.say(STATE)
                 (answer,) = client.answers()
                 assert f"{MAX_CLIENTS} clients are connected" in answer["error"]
-            clients[0].say(b'{"do": "state"}')
+            clients[0].say(STATE)
             assert "nodes" in clients[0].answer()
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
-    wait_until(lambda: "nodes" in asked(platform, b'{"do": "state"}')[0], "there is room again")
+    wait_until(lambda: "nodes" in asked(platform, STATE)[0], "there is room again")
 
 
-def test_a_run_without_room_for_a_client_can_be_stopped(start, run, platform) -> None:
+def test_a_run_without_room_for_a_client_is_stopped_all_the_same(start, run, platform) -> None:
     with ExitStack() as stack:
-        for _ in range(MAX_CLIENTS):
+        for _ in range(MAX_CLIENTS + STOP_PLACES):
             stack.enter_context(Client(platform))
+        refused = start(manycore_command("restart", "--platform", platform, "stays"))
+        assert refused.wait() == 1
+        assert "`manycore stop` is still served" in refused.output
         stop = start(manycore_command("stop", "--platform", platform))
-        assert stop.wait() == 1
-        pid = supervisor(platform)
-        assert f"kill {pid} stops the run" in stop.output
-        os.kill(pid, signal.SIGTERM)
-        run.wait()
-        assert "supervisor failed" not in run.output
+        assert stop.wait() == 0, stop
+        assert run.wait() == 0, run
 
 
-def test_a_supervisor_without_descriptors_turns_clients_away(run, platform) -> None:
+def test_a_supervisor_without_descriptors_turns_clients_away_and_can_be_killed(run, platform):
     pid = supervisor(platform)
     limits = resource.prlimit(pid, resource.RLIMIT_NOFILE)
     used = len(os.listdir(f"/proc/{pid}/fd"))
     resource.prlimit(pid, resource.RLIMIT_NOFILE, (used, limits[1]))
     for _ in range(3):
-        (answer,) = asked(platform, b'{"do": "state"}')
+        (answer,) = asked(platform, STATE)
         assert "out of file descriptors" in answer["error"]
     wait_until(lambda: is_asleep(pid), "no client is left that would keep it awake")
-    resource.prlimit(pid, resource.RLIMIT_NOFILE, limits)
+    run_quoted(answer["error"], "kill")
+    assert run.wait() == 0, run
