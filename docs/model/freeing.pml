@@ -3,8 +3,8 @@
  * Question: is the memory of a subscription freed only when no publisher and no receive thread can
  * still push to it, and is it always freed in the end, although they are killed?
  *
- * Follows closing.cpp (close_some), freeing.cpp (sweep_subscription), TopicDsmWriter::enter and
- * ::leave, ReceiveThread::forward. The publisher pushes through its private reader list; the
+ * Follows closing.cpp (close), freeing.cpp (free_subscription), TopicDsmWriter::enter and ::leave,
+ * ReceiveThread::forward. The publisher pushes through its private reader list; the
  * receive thread reads the table each time. The publisher may be killed at any step and is then
  * reaped. So may the receive thread, which is replaced if its cluster has a process left. The
  * process that closes the subscription may be killed at any step as well. The next owner of the
@@ -26,6 +26,7 @@
  * BUG 12: an endpoint that a killed process closed in part is freed as if it were closed
  * BUG 13 (reversed): closed before the reader is removed from the table
  * BUG 14 (reversed): a publisher recorded as seen out before it was checked
+ * BUG 15: the publisher's phase noted before the reader is removed from the table
  */
 #define GENERATION 0      /* match_generation */
 #define ACTIVE 1          /* of the reader table's entry */
@@ -40,23 +41,27 @@
 #include "tso.pml"
 
 bool closed;               /* state of the subscription; while false, it is closing */
-bool swept;                /* SubscriptionHeader::swept_before is past the one source */
+bool swept;                /* the one source is free */
+byte noted;                /* SourceEntry::accounted: the publisher's phase when it lost its reader */
 bool freed;
 bool kill_publisher, kill_receiver, kill_closer;
 bool publisher_ended, receiver_ended, closer_ended;
 bool receiver_lives = true;    /* its lifeline is held */
 
-/* Phases count up in C++; here they alternate between 0 and 1. */
 inline enter(p) {
   if
-  :: BUG == 2 + 2 * p -> store_release(p, PHASE(p), 1)
-  :: else -> store_seq_cst(p, PHASE(p), 1)
+  :: BUG == 2 + 2 * p -> store_release(p, PHASE(p), 2 * message - 1)
+  :: else -> store_seq_cst(p, PHASE(p), 2 * message - 1)
   fi
 }
 
 inline leave(p) {
-  store_release(p, PHASE(p), 0)
+  store_release(p, PHASE(p), 2 * message)
 }
+
+#define is_out(p) (load(CLOSER, PHASE(p)) % 2 == 0)
+/* A phase that began later began with a look at match_generation. */
+#define has_looked (is_out(PUBLISHER) || load(CLOSER, PHASE(PUBLISHER)) != noted)
 
 /* Each step inside a push accesses the queue; one step stands for all. */
 inline push() {
@@ -157,18 +162,24 @@ proctype Successor() {
 
 inline wait_for_receive_thread() {
 #if BUG == 10
-  load(CLOSER, PHASE(RECEIVER)) == 0
+  is_out(RECEIVER)
 #else
-  load(CLOSER, PHASE(RECEIVER)) == 0 || !receiver_lives
+  is_out(RECEIVER) || !receiver_lives
 #endif
 }
 
 inline take_off() {
+#if BUG == 15
+  noted = load(CLOSER, PHASE(PUBLISHER));
+#endif
   store_release(CLOSER, ACTIVE, 0);
 #if BUG != 6
-  d_step { settled(CLOSER) -> memory[GENERATION]++ }
+  d_step { settled(CLOSER) -> memory[GENERATION]++ };
 #else
-  settled(CLOSER)
+  settled(CLOSER);
+#endif
+#if BUG != 15
+  noted = load(CLOSER, PHASE(PUBLISHER))
 #endif
 }
 
@@ -176,9 +187,9 @@ inline free_when_out() {
 #if BUG != 1 && BUG != 5
   if
 #if BUG == 14
-  :: !swept -> swept = true; load(CLOSER, PHASE(PUBLISHER)) == 0
+  :: !swept -> swept = true; has_looked
 #else
-  :: !swept -> load(CLOSER, PHASE(PUBLISHER)) == 0; swept = true
+  :: !swept -> has_looked; swept = true
 #endif
   :: else
   fi;
@@ -191,7 +202,7 @@ inline free_when_out() {
 proctype Closer() {
   {
 #if BUG == 5
-    load(CLOSER, PHASE(PUBLISHER)) == 0;
+    is_out(PUBLISHER);
     wait_for_receive_thread();
 #endif
 #if BUG == 13

@@ -2,12 +2,12 @@
  *
  * Question: SMEM for a generation is reserved under the registry lock and backed with memory
  * without it. Does it belong to one publisher at a time, is it accessed only while it is backed,
- * and is it freed in the end, piece by piece, whichever process dies at whatever step, although
- * /dev/shm may be full?
+ * and is it freed in the end, whichever process dies at whatever step, although /dev/shm may be
+ * full?
  *
- * Follows TopicDsmWriter (add_generation, open_generation, free_old_generations,
- * open_first_generation), Generation (reserve, open, free_some), Registry::repair and freeing.cpp
- * (free_some_generations). The SMEM has two pieces. One publisher wants both; it may be killed at
+ * Follows TopicDsmWriter (add_generation, open_generation, open_first_generation), Generation
+ * (reserve, open) and Registry::repair. It is given back piece by piece here; hands.pml is the model
+ * of how the code does that. The SMEM has two pieces. One publisher wants both; it may be killed at
  * any step, and is then reaped, and its reaper may be killed, too. The other publisher wants one
  * piece. Each store is ordered by the lock or by a system call, except that of `first`, which x86
  * does not reorder before earlier stores.

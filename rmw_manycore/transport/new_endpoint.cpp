@@ -81,6 +81,9 @@ uint32_t enter_graph(
   }
   entry.order = ++registry.header().last_order;
   registry.endpoints().publish(taken);
+  if (hand != nullptr) {
+    hand->let_go();
+  }
   registry.link_endpoint(taken, Registry::Chain::live);
   return taken;
 }

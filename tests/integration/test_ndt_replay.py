@@ -88,15 +88,12 @@ def replayed(start: Any, recording: Path, *options: str, status: int = 0) -> dic
 
 
 def test_every_scan_of_a_drive_is_answered(start, platform, street, tmp_path):
-    """By the matcher that the replay advises to start."""
     alone = start(manycore_command("ndt", "replay", street / "drive.npz", "--timeout", "1"))
     assert alone.wait(LONG_S) == 1
-    (command,) = quoted(alone.output)
-    assert command == "manycore run ndt_offload"
-    offload = start(manycore_command(*command.split()[1:]), directory=tmp_path)
+    assert quoted(alone.output) == ["manycore run ndt_offload"]
+    offload = start(manycore_command("run", "ndt_offload"), directory=tmp_path)
     offload.wait_for("ndt_scan_matcher started")
-    files = ("--csv", str(tmp_path / "scans.csv"))
-    figures = replayed(start, street / "drive.npz", *files)
+    figures = replayed(start, street / "drive.npz", "--csv", str(tmp_path / "scans.csv"))
     assert (figures["scans"], figures["answered"]) == (10, 10)
     assert figures["within_share"] == 1.0
     assert figures["node_cpu_percent"] >= 0.0

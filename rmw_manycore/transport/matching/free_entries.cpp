@@ -19,7 +19,9 @@ Entry * FreeEntries::grow(const EntryTable<Entry> & table, Cluster & cluster) {
     needed_ = needed;
     return nullptr;
   }
-  return &table.grow(hand_->take().offset());
+  Entry & first = table.grow(hand_->block().offset());
+  hand_->let_go();
+  return &first;
 }
 
 FreeEntries::Source FreeEntries::source(Cluster & cluster, SubscriptionHeader & subscription) {

@@ -103,11 +103,10 @@ bool BlockInHand::await_another(const NeededBlock & needed) const {
   return was_made;
 }
 
-/// If this process dies before the block is attached, the next owner of the lock builds the map
-/// without it: its pages stay with the system's memory until the SMEM is used again.
-SegmentRef BlockInHand::take() noexcept {
+/// If this process dies before it, a repair finds the block attached as well.
+void BlockInHand::let_go() noexcept {
   made_.reset();
-  return SegmentRef{hand_->block.exchange(0)};
+  hand_->block.store(0);
 }
 
 void BlockInHand::take_up(SegmentRef block, uint64_t bytes) noexcept {

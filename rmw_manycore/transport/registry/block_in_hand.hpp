@@ -53,8 +53,9 @@ public:
   /// Waits for another process that is making a block like this one: its endpoint may be the one
   /// that needs it. False if there is none, or it takes longer than five seconds.
   bool await_another(const NeededBlock & needed) const;
-  /// Takes the block out of the hand. The caller holds the registry lock, and attaches the block.
-  SegmentRef take() noexcept;
+  /// The block, for a caller that holds the registry lock and attaches it, then lets go of it.
+  SegmentRef block() const noexcept { return SegmentRef{hand_->block.load()}; }
+  void let_go() noexcept;
 
   /// Takes up a block to be freed, one at a time. The caller holds the registry lock, and clears
   /// what led to the block. A small block is freed at once, others by empty() without the lock.

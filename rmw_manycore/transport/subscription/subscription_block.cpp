@@ -23,7 +23,7 @@ SubscriptionHeader & cleared_block(Cluster & cluster, uint64_t bytes, BlockInHan
   if (hand == nullptr) {
     return cluster.allocate_cleared<SubscriptionHeader>(bytes);
   }
-  auto * const made = cluster.find<SubscriptionHeader>(hand->take().offset(), bytes);
+  auto * const made = cluster.find<SubscriptionHeader>(hand->block().offset(), bytes);
   if (made == nullptr) {
     throw Error(
       ErrorCode::corrupt, "the registry is damaged; stop the nodes, run 'manycore clean'");

@@ -83,8 +83,9 @@ void MatchRoom::attach() noexcept {
     return;
   }
   LandingHeader * landing = retired_landing(*table_, dsm_, receiver_);
-  if (landing == nullptr) {
-    landing = receiver_.find<LandingHeader>(hand_->take().offset(), landing_bytes(dsm_));
+  const bool is_new = landing == nullptr;
+  if (is_new) {
+    landing = receiver_.find<LandingHeader>(hand_->block().offset(), landing_bytes(dsm_));
     if (landing == nullptr) {
       return;  // damaged
     }
@@ -94,6 +95,9 @@ void MatchRoom::attach() noexcept {
   table_->landings[receiver_.id() - 1].store(
     receiver_.ref_of(landing).offset(), std::memory_order_seq_cst);
   table_->retired[receiver_.id() - 1].store(0);
+  if (is_new) {
+    hand_->let_go();
+  }
 }
 
 void retire(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept {
