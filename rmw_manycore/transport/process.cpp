@@ -170,8 +170,10 @@ void Process::Impl::leave() {
     cluster.wake_reaper();  // it has descriptors of its own
     throw;
   }
-  BlockInHand(*registry, registry->parting_wait_ns());  // no other process empties the hand later
-  registry->graph_changed();                            // the lock may take a while
+  {
+    const BlockInHand emptied(*registry, registry->parting_wait_ns());  // nothing is left behind
+  }
+  registry->graph_changed();  // the lock may take a while
   {
     const Registry::Lock lock(*registry, registry->parting_wait_ns());
     registry->tracer().note(TraceKind::leave);

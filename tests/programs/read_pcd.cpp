@@ -17,15 +17,15 @@
 
 namespace {
 
-template <typename Number>
-double number_at(const uint8_t* place) {
+template<typename Number>
+double number_at(const uint8_t * place) {
   Number number;
   std::memcpy(&number, place, sizeof number);
   return static_cast<double>(number);
 }
 
-double value_of(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field, size_t point) {
-  const uint8_t* place = &cloud.data[point * cloud.point_step + field.offset];
+double value_of(const pcl::PCLPointCloud2 & cloud, const pcl::PCLPointField & field, size_t point) {
+  const uint8_t * place = &cloud.data[point * cloud.point_step + field.offset];
   switch (field.datatype) {
     case pcl::PCLPointField::INT8:
       return number_at<int8_t>(place);
@@ -48,15 +48,15 @@ double value_of(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& fiel
   }
 }
 
-void print_points(const std::string& path) {
+void print_points(const std::string & path) {
   pcl::PCLPointCloud2 cloud;
   Eigen::Vector4f origin;
   Eigen::Quaternionf orientation;
   int version = 0;
   pcl::PCDReader reader;
-  std::array<const pcl::PCLPointField*, 3> axes = {};
+  std::array<const pcl::PCLPointField *, 3> axes = {};
   if (reader.read(path, cloud, origin, orientation, version) >= 0) {
-    for (const auto& field : cloud.fields) {
+    for (const auto & field : cloud.fields) {
       for (size_t axis = 0; axis < axes.size(); ++axis) {
         if (field.name == std::string(1, static_cast<char>('x' + axis))) {
           axes[axis] = &field;
@@ -69,7 +69,7 @@ void print_points(const std::string& path) {
     return;
   }
   for (size_t point = 0; point < size_t{cloud.width} * cloud.height; ++point) {
-    for (const auto* axis : axes) {
+    for (const auto * axis : axes) {
       std::printf("%a ", value_of(cloud, *axis, point));
     }
   }

@@ -33,8 +33,8 @@ void make_private_directory(const std::string & path) {
   PrivateDirectory::open(path);  // if its last user has just removed it, the caller tries again
 }
 
-/// Removes the join lock, and the user directory, if no platform is left. What it cannot remove, the
-/// next process that holds the lock tidies up.
+/// Removes the join lock, and the user directory, if no platform is left. What it cannot remove,
+/// the next process that holds the lock tidies up.
 void tidy_user_directory(const PlatformPaths & paths) noexcept {
   try {
     const auto directory = PrivateDirectory::open(paths.user_directory);
