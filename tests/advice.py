@@ -10,6 +10,7 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 from source_texts import NATIVE, PYTHON, ROOT
@@ -25,8 +26,13 @@ LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 JOINED = re.compile(r'"\s*(?:\+\s*(?:[^";{}]*?)\s*\+)?\s*"')
 
 
-def messages() -> Iterator[tuple[Path, str]]:
-    """Yield file and text of each message, VALUE for what it fills in."""
+@cache
+def messages() -> list[tuple[Path, str]]:
+    """Return file and text of each message, VALUE for what it fills in."""
+    return list(_messages())
+
+
+def _messages() -> Iterator[tuple[Path, str]]:
     for folder in PYTHON:
         for file in sorted((ROOT / folder).rglob("*.py")):
             for text in _of_python(ast.parse(file.read_text())):

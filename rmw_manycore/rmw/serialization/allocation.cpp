@@ -6,7 +6,7 @@
 
 namespace {
 
-rmw_ret_t refuse() {
+rmw_ret_t refuse_preallocation() {
   RMW_SET_ERROR_MSG(
     "rmw_manycore does not support preallocation: it allocates nothing per message");
   return RMW_RET_UNSUPPORTED;
@@ -17,15 +17,19 @@ rmw_ret_t refuse() {
 rmw_ret_t rmw_init_publisher_allocation(
   const rosidl_message_type_support_t *, const rosidl_runtime_c__Sequence__bound *,
   rmw_publisher_allocation_t *) {
-  return refuse();
+  return refuse_preallocation();
 }
 
-rmw_ret_t rmw_fini_publisher_allocation(rmw_publisher_allocation_t *) { return refuse(); }
+rmw_ret_t rmw_fini_publisher_allocation(rmw_publisher_allocation_t *) {
+  return refuse_preallocation();
+}
 
 rmw_ret_t rmw_init_subscription_allocation(
   const rosidl_message_type_support_t *, const rosidl_runtime_c__Sequence__bound *,
   rmw_subscription_allocation_t *) {
-  return refuse();
+  return refuse_preallocation();
 }
 
-rmw_ret_t rmw_fini_subscription_allocation(rmw_subscription_allocation_t *) { return refuse(); }
+rmw_ret_t rmw_fini_subscription_allocation(rmw_subscription_allocation_t *) {
+  return refuse_preallocation();
+}

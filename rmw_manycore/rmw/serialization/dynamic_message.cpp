@@ -6,7 +6,7 @@
 
 namespace {
 
-rmw_ret_t refuse() {
+rmw_ret_t refuse_dynamic_message() {
   RMW_SET_ERROR_MSG("rmw_manycore does not support dynamic messages");
   return RMW_RET_UNSUPPORTED;
 }
@@ -24,7 +24,7 @@ rmw_ret_t rmw_take_dynamic_message(
 
   // Implementation
   *taken = false;
-  return refuse();
+  return refuse_dynamic_message();
 }
 
 rmw_ret_t rmw_take_dynamic_message_with_info(
@@ -39,7 +39,7 @@ rmw_ret_t rmw_take_dynamic_message_with_info(
 
   // Implementation
   *taken = false;
-  return refuse();
+  return refuse_dynamic_message();
 }
 
 rmw_ret_t rmw_serialization_support_init(
@@ -50,5 +50,5 @@ rmw_ret_t rmw_serialization_support_init(
   MANYCORE_CHECK_ARGUMENT(serialization_support);
 
   // Implementation
-  return refuse();
+  return refuse_dynamic_message();
 }

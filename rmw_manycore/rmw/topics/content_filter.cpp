@@ -6,7 +6,7 @@
 
 namespace {
 
-rmw_ret_t refuse() {
+rmw_ret_t refuse_content_filter() {
   RMW_SET_ERROR_MSG("rmw_manycore does not support content filters");
   return RMW_RET_UNSUPPORTED;
 }
@@ -20,7 +20,7 @@ rmw_ret_t rmw_subscription_set_content_filter(
   MANYCORE_CHECK_ARGUMENT(options);
 
   // Implementation
-  return refuse();
+  return refuse_content_filter();
 }
 
 rmw_ret_t rmw_subscription_get_content_filter(
@@ -32,5 +32,5 @@ rmw_ret_t rmw_subscription_get_content_filter(
   MANYCORE_CHECK_ARGUMENT(options);
 
   // Implementation
-  return refuse();
+  return refuse_content_filter();
 }

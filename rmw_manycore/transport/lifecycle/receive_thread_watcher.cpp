@@ -13,9 +13,9 @@
 namespace manycore {
 namespace {
 
-constexpr int retry_ms = 1000;  ///< after a failed start
-constexpr int settle_ms = 1;    ///< while another process is starting it
-constexpr int for_ever_ms = -1;
+constexpr int restart_ms = 1000;  ///< after a failed start
+constexpr int settle_ms = 1;      ///< while another process is starting it
+constexpr int no_timeout_ms = -1;
 constexpr int foreign_ms = 500;  ///< pidfds do not work across PID namespaces
 
 /// Sleeps until the timeout or until the descriptor is readable; -1 disables either. The thread can
@@ -72,7 +72,7 @@ bool ReceiveThreadWatcher::watch_once() {
   const LastingDescriptor pidfd(open_pidfd(receive_thread.pid));
   // The lifeline proves that the pid read above is still the receive thread's.
   const bool is_watched = lifelines.is_held(line) && pidfd.get() >= 0;
-  sleep_cancellable(is_watched ? for_ever_ms : settle_ms, pidfd.get());
+  sleep_cancellable(is_watched ? no_timeout_ms : settle_ms, pidfd.get());
   return true;
 }
 
@@ -89,7 +89,7 @@ void ReceiveThreadWatcher::run() {
         std::fprintf(stderr, "[rmw_manycore] %s\n", error.what());
       }
       reported = true;
-      sleep_cancellable(retry_ms);
+      sleep_cancellable(restart_ms);
     }
   }
 }

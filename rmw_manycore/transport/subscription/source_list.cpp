@@ -9,7 +9,7 @@
 namespace manycore {
 namespace {
 
-constexpr uint64_t outdated = UINT64_MAX;  ///< matches no `source_generation`
+constexpr uint64_t no_source_generation = UINT64_MAX;  ///< matches no `source_generation`
 
 }  // namespace
 
@@ -35,7 +35,7 @@ bool SourceList::renew() {
       has_new = has_new || !is_known;
       renewed.push_back(source);
     } else {
-      seen_generation_ = outdated;  // its cluster cannot be mapped at present
+      seen_generation_ = no_source_generation;  // its cluster cannot be mapped at present
     }
     return false;
   });

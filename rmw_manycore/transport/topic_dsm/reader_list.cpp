@@ -10,7 +10,7 @@
 namespace manycore {
 namespace {
 
-constexpr uint64_t outdated = UINT64_MAX;  ///< matches no `match_generation`
+constexpr uint64_t no_match_generation = UINT64_MAX;  ///< matches no `match_generation`
 
 }  // namespace
 
@@ -94,7 +94,7 @@ bool ReaderList::rebuild() noexcept {
     is_copied = false;
   }
   if (failure_) {
-    seen_ = outdated;
+    seen_ = no_match_generation;
   }
   return is_copied;
 }

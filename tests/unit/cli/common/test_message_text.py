@@ -106,8 +106,8 @@ def test_csv_has_the_values_in_the_order_of_the_fields() -> None:
 
 
 def test_csv_has_a_line_for_a_message() -> None:
-    log = Log(name="a\nb", msg="\x1b[31m\ttext", file="\\n", function="caf\u00e9")
-    assert to_csv(log) == r"0,0,0,a\nb,\x1b[31m\ttext,\n,café,0"
+    log = Log(name="a\nb", msg="\x1b[31m\ttext", file="\\n", function="\u00e9")
+    assert to_csv(log) == r"0,0,0,a\nb,\x1b[31m\ttext,\n,é,0"
 
 
 def test_a_single_value_is_a_line() -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -25,11 +26,13 @@ SCAN = scan_at(WORLD, pose(*TRUE))[::7]
 Voxels = dict[tuple[int, ...], tuple[Points, Points]]  # cell: mean, inverse covariance
 
 
-def voxels_of(points: Points, size_m: float, covariance: VoxelCovariance) -> Voxels:
-    cells = np.floor(points / size_m).astype(int)
+@cache
+def voxels_of(size_m: float, covariance: VoxelCovariance) -> Voxels:
+    """Return the voxels of the world."""
+    cells, of_point = np.unique(np.floor(WORLD / size_m).astype(int), axis=0, return_inverse=True)
+    order, counts = np.argsort(of_point, kind="stable"), np.bincount(of_point.ravel())
     found: Voxels = {}
-    for cell in np.unique(cells, axis=0):
-        inside = points[(cells == cell).all(axis=1)]
+    for cell, inside in zip(cells, np.split(WORLD[order], np.cumsum(counts)[:-1]), strict=True):
         count = len(inside)
         if count < 6:
             continue
@@ -47,7 +50,9 @@ def voxels_of(points: Points, size_m: float, covariance: VoxelCovariance) -> Vox
 
 def neighbours(voxels: Voxels, point: Points, size_m: float, search: Search) -> list[Any]:
     if search == "radius":
-        return [v for v in voxels.values() if np.linalg.norm(point - v[0]) <= size_m]
+        means = np.array([mean for mean, _ in voxels.values()])
+        near = np.linalg.norm(point - means, axis=1) <= size_m
+        return [voxel for voxel, is_near in zip(voxels.values(), near, strict=True) if is_near]
     cell = np.floor(point / size_m).astype(int)
     offsets = [np.zeros(3, int)]
     if search == "direct7":
@@ -63,7 +68,7 @@ def expected_score(at: Points, options: MatcherOptions) -> tuple[float, float]:
     d3 = -np.log(c2)
     d1 = -np.log(c1 + c2) - d3
     d2 = -2 * np.log((-np.log(c1 * np.exp(-0.5) + c2) - d3) / d1)
-    voxels = voxels_of(WORLD, size, options.voxel_covariance)
+    voxels = voxels_of(size, options.voxel_covariance)
     total, best = 0.0, []
     for point in SCAN @ at[:3, :3].T + at[:3, 3]:
         scores = [
