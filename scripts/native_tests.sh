@@ -24,9 +24,11 @@ python scripts/progress.py "$build.log" "compiling native tests in $build" \
 # - test_closed_descriptors closes descriptors in use by other threads, which is a data race.
 # - test_unmappable_cluster uses up all descriptors; the undefined-behaviour sanitizer needs one to
 #   examine an object, and reports a valid one as invalid without.
+# - test_out_of_memory replaces operator new, as the sanitizers do.
+always='test_killed.*|test_damaged_running|test_out_of_memory'
 case "$*" in
-  *SANITIZE=thread*) skipped='^(test_killed.*|test_damaged_running|test_closed_descriptors)$' ;;
-  *SANITIZE*) skipped='^(test_killed.*|test_damaged_running|test_unmappable_cluster)$' ;;
+  *SANITIZE=thread*) skipped="^($always|test_closed_descriptors)$" ;;
+  *SANITIZE*) skipped="^($always|test_unmappable_cluster)$" ;;
   *) skipped='^$' ;;
 esac
 # One more than CPUs: those that step through processes wait for each step.
