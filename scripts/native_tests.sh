@@ -24,8 +24,7 @@ python scripts/progress.py "$build.log" "compiling native tests in $build" \
 # - test_closed_descriptors closes descriptors in use by other threads, which is a data race.
 # - test_unmappable_cluster uses up all descriptors; the undefined-behaviour sanitizer needs one to
 #   examine an object, and reports a valid one as invalid without.
-# - test_out_of_memory replaces operator new, as the sanitizers do.
-always='test_killed.*|test_damaged_running|test_out_of_memory'
+always='test_killed.*|test_damaged_running'
 case "$*" in
   *SANITIZE=thread*) skipped="^($always|test_closed_descriptors)$" ;;
   *SANITIZE*) skipped="^($always|test_unmappable_cluster)$" ;;
