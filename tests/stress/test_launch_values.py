@@ -8,16 +8,15 @@ from pathlib import Path
 
 import pytest
 import ros2_packages
+from comparing import MANY
 from launch_values import by_launch, by_us, write
 from made_launch_values import made
-
-FILES = int(os.environ.get("MANYCORE_TEST_COMPARED_FILES", "10000"))
 
 
 @pytest.mark.skipif(not ros2_packages.are_available(), reason=ros2_packages.REASON)
 def test_values_are_those_that_launch_gives(tmp_path: Path) -> None:
     environment = {**os.environ, **ros2_packages.environment(tmp_path / "packages")}
-    files = [write(tmp_path, number, made(number)) for number in range(FILES)]
+    files = [write(tmp_path, number, made(number)) for number in range(MANY)]
     found = zip(files, by_launch(files, environment), strict=True)
     wrong = [file.read_text() for file, expected in found if by_us(file) != expected]
     assert wrong == []

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import ast
-import os
 from pathlib import Path
 
 import pytest
 import rclpy
+from comparing import MANY
 from parameter_files import (
     Generator,
     compare_command_lines,
@@ -21,8 +21,7 @@ from support import IS_MANYCORE, peer_command
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="manycore run is about rmw_manycore")
 
-FILES = int(os.environ.get("MANYCORE_TEST_PARAMETER_FILES", "10000"))
-PROCESSES = int(os.environ.get("MANYCORE_TEST_PARAMETER_NODES", "200"))
+NODES = MANY // 50
 
 
 @pytest.fixture
@@ -33,16 +32,16 @@ def context(platform):
 
 
 def test_files_are_read_as_by_a_node(context, tmp_path: Path) -> None:
-    assert compare_files(context, tmp_path, range(FILES))[1] == ""
+    assert compare_files(context, tmp_path, range(MANY))[1] == ""
 
 
 def test_command_lines_give_what_launch_gives(context, tmp_path: Path) -> None:
-    assert compare_command_lines(context, tmp_path, range(FILES)) == ""
+    assert compare_command_lines(context, tmp_path, range(MANY)) == ""
 
 
 def test_files_are_read_as_by_nodes_that_are_started_with_them(start, tmp_path: Path) -> None:
     file = tmp_path / "file.yaml"
-    for number in range(PROCESSES):
+    for number in range(NODES):
         file.write_bytes(Generator(number).file())
         found = read_here(file, "/ns/probe")
         words = ("--ros-args", "--params-file", str(file))
