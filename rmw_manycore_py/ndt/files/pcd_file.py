@@ -3,27 +3,24 @@
 
 The reader is our own: of Open3D's (0.20) readers of binary files, one reads doubles as singles, the
 other fails on the padding fields that PCL writes; pypcd4 (1.5) takes only files as PCL writes them
-today, and believes their headers.
+today, and does not validate their headers.
 """
 
 from __future__ import annotations
 
-import os
 import struct
 import warnings
 from pathlib import Path
 from types import ModuleType
-from typing import IO, Any, TypeAlias
+from typing import IO
 
 import numpy as np
-import numpy.typing as npt
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.files.pcd_header import PADDING, PcdHeader, read_header
+from rmw_manycore_py.ndt.files.positions import Column, axes_in, read_data, stacked, write_binary
 from rmw_manycore_py.ndt.geometry.arrays import Points
 
-AXES = ("x", "y", "z")
-Column: TypeAlias = npt.NDArray[Any]  # (N,)
 HEADER = """VERSION 0.7
 FIELDS x y z
 SIZE {size} {size} {size}
@@ -35,27 +32,20 @@ VIEWPOINT 0 0 0 1 0 0 0
 POINTS {points}
 DATA binary
 """
-_NO_COLUMNS = [np.zeros(0)] * len(AXES)
+_NO_COLUMNS = [np.zeros(0)] * 3
 # LZF replaces at most 264 bytes by 3.
-LARGEST_RATIO = 88
+MAX_RATIO = 88
 
 
 def read_pcd(path: Path) -> Points:
     """Return the positions (N, 3), including non-finite ones; raises OSError and ValueError."""
     with path.open("rb") as file:
         header = read_header(file)
-        names = [field.name for field in header.fields]
-        missing = [axis for axis in AXES if axis not in names]
-        if missing:
-            raise ValueError(f"it has no field {', '.join(missing)}")
-        axes = [names.index(axis) for axis in AXES]
+        axes = axes_in([field.name for field in header.fields])
         numbers = {header.fields[axis].number for axis in axes}
         has_points = header.points > 0
         columns = _READERS[header.encoding](file, header, axes) if has_points else _NO_COLUMNS
-    number = np.float32 if numbers == {np.dtype(np.float32)} else np.float64
-    with np.errstate(invalid="ignore"):  # signalling nan
-        points: Points = np.stack(columns, axis=1).astype(number)
-    return points
+    return stacked(columns, is_single=numbers == {np.dtype(np.float32)})
 
 
 def _ascii(file: IO[bytes], header: PcdHeader, axes: list[int]) -> list[Column]:
@@ -71,7 +61,7 @@ def _ascii(file: IO[bytes], header: PcdHeader, axes: list[int]) -> list[Column]:
 
 
 def _binary(file: IO[bytes], header: PcdHeader, axes: list[int]) -> list[Column]:
-    data = _read(file, header, header.points * header.point_bytes)
+    data = read_data(file, header.points, header.points * header.point_bytes)
     firsts = np.cumsum([0, *(field.bytes for field in header.fields)])
     shape, strides = (header.points,), (header.point_bytes,)
     return [
@@ -82,13 +72,13 @@ def _binary(file: IO[bytes], header: PcdHeader, axes: list[int]) -> list[Column]
 
 def _compressed(file: IO[bytes], header: PcdHeader, axes: list[int]) -> list[Column]:
     """Return columns of a file that has one field of all points after the other."""
-    packed_bytes, unpacked_bytes = struct.unpack("<II", _read(file, header, 8))
-    packed = _read(file, header, packed_bytes)
+    packed_bytes, unpacked_bytes = struct.unpack("<II", read_data(file, header.points, 8))
+    packed = read_data(file, header.points, packed_bytes)
     # PCL leaves padding out, others do not.
     sizes = [field.bytes * header.points for field in header.fields]
     bare = [0 if f.name == PADDING else s for f, s in zip(header.fields, sizes, strict=True)]
     sizes = bare if unpacked_bytes == sum(bare) else sizes
-    if unpacked_bytes < sum(sizes) or unpacked_bytes > LARGEST_RATIO * packed_bytes:
+    if unpacked_bytes < sum(sizes) or unpacked_bytes > MAX_RATIO * packed_bytes:
         raise ValueError(
             f"its {header.points} points need {sum(sizes)} bytes, found {unpacked_bytes} in "
             f"{packed_bytes} compressed ones"
@@ -103,21 +93,13 @@ def _compressed(file: IO[bytes], header: PcdHeader, axes: list[int]) -> list[Col
     ]
 
 
-def _read(file: IO[bytes], header: PcdHeader, size_bytes: int) -> bytes:
-    # Before anything is allocated: the size may be an invention of a damaged header.
-    left_bytes = os.fstat(file.fileno()).st_size - file.tell()
-    if left_bytes < size_bytes:
-        raise ValueError(f"its {header.points} points need {size_bytes} bytes, found {left_bytes}")
-    return file.read(size_bytes)
-
-
 _READERS = {"ascii": _ascii, "binary": _binary, "binary_compressed": _compressed}
 
 
 def write_pcd(path: Path, points: Points) -> None:
     """Write positions (N, 3) in their own precision, as a binary file."""
     header = HEADER.format(size=points.dtype.itemsize, points=len(points))
-    path.write_bytes(header.encode() + points.astype(points.dtype.newbyteorder("<")).tobytes())
+    write_binary(path, header, points)
 
 
 def _load_lzf() -> ModuleType:

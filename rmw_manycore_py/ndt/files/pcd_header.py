@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """The header of a PCD file, by the rules of PCL's reader (`pcl::PCDReader::readHeader`).
 
-Its lines are recognised by how they begin; the version is not looked at. Files of versions before
-0.7 have neither SIZE and TYPE, which means float32, nor COUNT. A field with COUNT 0 is not there.
+Only the beginning of a line's first word counts; the version is ignored. Files before version 0.7
+have no SIZE, TYPE and COUNT: each field is one float32. A field with COUNT 0 is left out.
 """
 
 from __future__ import annotations
@@ -13,13 +13,15 @@ from typing import IO
 
 import numpy as np
 
+from rmw_manycore_py.ndt.files.positions import broken, count_in
+
 KEYWORDS = (
     *("VERSION", "FIELDS", "COLUMNS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "VIEWPOINT"),
     *("POINTS", "DATA"),
 )
 ENCODINGS = ("binary_compressed", "binary", "ascii")
 PADDING = "_"
-LONGEST_LINE = 1_000_000  # bytes
+MAX_LINE_BYTES = 1_000_000
 _SINGLE = "f4"
 _LETTERS = {"F": "f", "I": "i", "U": "u"}
 _NUMBERS = ("f4", "f8", "i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8")
@@ -43,7 +45,7 @@ class Field:
     def number(self) -> np.dtype[np.generic]:
         """Return the type of its numbers; raise ValueError if there is no such type."""
         if self.kind not in _NUMBERS:
-            raise _broken(f"the field {self.name} has an unknown TYPE, or an unknown SIZE for it")
+            raise broken(f"the field {self.name} has an unknown TYPE, or an unknown SIZE for it")
         return np.dtype(f"<{self.kind}")
 
 
@@ -62,7 +64,7 @@ class PcdHeader:
 
     @property
     def point_numbers(self) -> int:
-        """Return how many numbers a point has."""
+        """Return the count of numbers in a point."""
         return sum(field.count for field in self.fields)
 
 
@@ -71,30 +73,30 @@ def read_header(file: IO[bytes]) -> PcdHeader:
     entries: dict[str, list[str]] = {}
     for keyword, words in _lines(file):
         if keyword in ("TYPE", "COUNT") and "SIZE" not in entries:
-            raise _broken(f"{keyword} before SIZE")
+            raise broken(f"{keyword} before SIZE")
         if keyword == "COUNT" and "TYPE" not in entries:
-            raise _broken("COUNT before TYPE")
+            raise broken("COUNT before TYPE")
         entries["FIELDS" if keyword == "COLUMNS" else keyword] = words
     fields = _fields(entries)
     encoding = next((e for e in ENCODINGS if "".join(entries["DATA"][:1]).startswith(e)), "")
     if not encoding:
-        raise _broken(f"DATA is none of {', '.join(ENCODINGS)}")
+        raise broken(f"DATA is none of {', '.join(ENCODINGS)}")
     return PcdHeader(fields, _points(entries), encoding)
 
 
 def _lines(file: IO[bytes]) -> Iterator[tuple[str, list[str]]]:
     """Yield the lines up to DATA: keyword and words."""
-    while line := file.readline(LONGEST_LINE):
+    while line := file.readline(MAX_LINE_BYTES):
         words = line.decode("utf-8", "replace").split()
         if not words or words[0].startswith("#"):
             continue
         keyword = next((word for word in KEYWORDS if words[0].startswith(word)), "")
         if not keyword:
-            raise _broken(f"expected one of {', '.join(KEYWORDS)}, found '{words[0][:40]}'")
+            raise broken(f"expected one of {', '.join(KEYWORDS)}, found '{words[0][:40]}'")
         yield keyword, words[1:]
         if keyword == "DATA":
             return
-    raise _broken("it has no line DATA")
+    raise broken("it has no line DATA")
 
 
 def _fields(entries: dict[str, list[str]]) -> tuple[Field, ...]:
@@ -116,24 +118,18 @@ def _numbers(
     if keyword not in entries:
         return [default] * len(names)
     _check_length(entries, keyword, names)
-    return [_number(keyword, word) for word in entries[keyword]]
+    return [count_in(word, keyword) for word in entries[keyword]]
 
 
 def _check_length(entries: dict[str, list[str]], keyword: str, names: Sequence[str]) -> None:
     if len(entries[keyword]) != len(names):
-        raise _broken(f"{len(names)} FIELDS, but {len(entries[keyword])} of {keyword}")
-
-
-def _number(keyword: str, word: str) -> int:
-    if not word.isdecimal() or len(word) > 18:
-        raise _broken(f"{keyword} is not a number: '{word[:40]}'")
-    return int(word)
+        raise broken(f"{len(names)} FIELDS, but {len(entries[keyword])} of {keyword}")
 
 
 def _points(entries: dict[str, list[str]]) -> int:
     """Return the number of points; WIDTH and HEIGHT may be missing in old files."""
     known = {
-        keyword: _number(keyword, "".join(entries[keyword][:1]))
+        keyword: count_in("".join(entries[keyword][:1]), keyword)
         for keyword in ("WIDTH", "HEIGHT", "POINTS")
         if keyword in entries
     }
@@ -141,9 +137,5 @@ def _points(entries: dict[str, list[str]]) -> int:
     height = known.get("HEIGHT", 1)
     width = known.get("WIDTH", 0) or (0 if "HEIGHT" in known else points)
     if width * height != points:
-        raise _broken(f"WIDTH {width} and HEIGHT {height} do not give {points} POINTS")
+        raise broken(f"WIDTH {width} and HEIGHT {height} do not give {points} POINTS")
     return points
-
-
-def _broken(problem: str) -> ValueError:
-    return ValueError(f"its header is broken: {problem}")

@@ -12,14 +12,22 @@ import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 import numpy as np
 import numpy.typing as npt
 
+from rmw_manycore_py.ndt.files.positions import (
+    Column,
+    axes_in,
+    broken,
+    count_in,
+    read_data,
+    stacked,
+    write_binary,
+)
 from rmw_manycore_py.ndt.geometry.arrays import Points
 
-AXES = ("x", "y", "z")
 NUMBERS = {
     **dict.fromkeys(("char", "int8"), "i1"),
     **dict.fromkeys(("uchar", "uint8"), "u1"),
@@ -31,7 +39,7 @@ NUMBERS = {
     **dict.fromkeys(("double", "float64"), "f8"),
 }
 ORDERS = {"ascii": "=", "binary_little_endian": "<", "binary_big_endian": ">"}
-LONGEST_HEADER = 100_000  # bytes
+MAX_HEADER_BYTES = 100_000
 HEADER = """ply
 format binary_little_endian 1.0
 element vertex {points}
@@ -69,18 +77,13 @@ def read_ply(path: Path) -> Points:
     """Return the positions (N, 3), including non-finite ones; raises OSError and ValueError."""
     with path.open("rb") as file:
         header = _read_header(file)
-        names = [name for name, _ in header.points.properties]
-        missing = [axis for axis in AXES if axis not in names]
-        if missing:
-            raise ValueError(f"it has no field {', '.join(missing)}")
+        properties = header.points.properties
+        axes = axes_in([name for name, _ in properties])
         if header.points.has_lists:
             raise ValueError("it is broken: its points have lists")
         read = _ascii if header.encoding == "ascii" else _binary
-        columns = read(file, header, [names.index(axis) for axis in AXES])
-    is_single = all(header.points.properties[names.index(a)][1] == ("f4",) for a in AXES)
-    with np.errstate(invalid="ignore"):  # signalling nan
-        points: Points = np.stack(columns, axis=1).astype(np.float32 if is_single else np.float64)
-    return points
+        columns = read(file, header, axes)
+    return stacked(columns, is_single=all(properties[axis][1] == ("f4",) for axis in axes))
 
 
 def _read_header(file: IO[bytes]) -> _Header:
@@ -89,23 +92,23 @@ def _read_header(file: IO[bytes]) -> _Header:
     encoding, elements = "", list[_Element]()
     try:
         if next(words) != "ply":
-            raise _broken("it does not begin with ply")
+            raise broken("it does not begin with ply")
         for word in words:
             if word == "format":
                 encoding, _ = next(words), next(words)
             elif word == "element":
-                elements.append(_Element(next(words), _count(next(words))))
+                elements.append(_Element(next(words), count_in(next(words), "a count")))
             elif word == "property" and elements:
                 kinds = [next(words)]
                 if kinds == ["list"]:
                     kinds = [next(words), next(words)]
                 elements[-1].properties.append((next(words), tuple(map(_number, kinds))))
             else:
-                raise _broken(f"expected an element or a property, found '{word[:40]}'")
+                raise broken(f"expected an element or a property, found '{word[:40]}'")
     except StopIteration:
-        raise _broken("it ends early") from None
+        raise broken("it ends early") from None
     if encoding not in ORDERS:
-        raise _broken(f"the format is none of {', '.join(ORDERS)}")
+        raise broken(f"the format is none of {', '.join(ORDERS)}")
     names = [element.name for element in elements]
     if "vertex" not in names:
         raise ValueError("it has no points: its header has no element vertex")
@@ -113,7 +116,7 @@ def _read_header(file: IO[bytes]) -> _Header:
 
 
 def _header_words(file: IO[bytes]) -> Iterator[str]:
-    while (line := file.readline(LONGEST_HEADER)) and file.tell() <= LONGEST_HEADER:
+    while (line := file.readline(MAX_HEADER_BYTES)) and file.tell() <= MAX_HEADER_BYTES:
         at = 0
         while at < len(line) and (rest := line[at:].split(maxsplit=1)):
             word = rest[0]
@@ -128,19 +131,13 @@ def _header_words(file: IO[bytes]) -> Iterator[str]:
     raise ValueError("it has no points: its header has no end_header")
 
 
-def _count(word: str) -> int:
-    if not word.isdecimal() or len(word) > 18:
-        raise _broken(f"a count is not a number: '{word[:40]}'")
-    return int(word)
-
-
 def _number(word: str) -> str:
     if word not in NUMBERS:
-        raise _broken(f"the type '{word[:40]}' is unknown")
+        raise broken(f"the type '{word[:40]}' is unknown")
     return NUMBERS[word]
 
 
-def _ascii(file: IO[bytes], header: _Header, axes: list[int]) -> list[npt.NDArray[Any]]:
+def _ascii(file: IO[bytes], header: _Header, axes: list[int]) -> list[Column]:
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # of what is no number
         try:
@@ -174,20 +171,15 @@ def _length(number: float) -> int:
     return int(number)
 
 
-def _binary(file: IO[bytes], header: _Header, axes: list[int]) -> list[npt.NDArray[Any]]:
+def _binary(file: IO[bytes], header: _Header, axes: list[int]) -> list[Column]:
     order = ORDERS[header.encoding]
     for element in header.elements[:-1]:
         _skip(file, element, order)
-    names = [
-        (f"{at}", f"{order}{kinds[0]}") for at, (_, kinds) in enumerate(header.points.properties)
-    ]
-    record = np.dtype(names)
-    needed = header.points.count * record.itemsize
-    left = max(os.fstat(file.fileno()).st_size - file.tell(), 0)
-    if left < needed:
-        raise ValueError(f"its {header.points.count} points need {needed} bytes, found {left}")
-    records = np.frombuffer(file.read(needed), record)
-    return [records[f"{axis}"] for axis in axes]
+    kinds = [f"{order}{kind}" for _, (kind,) in header.points.properties]
+    record = np.dtype([(str(at), kind) for at, kind in enumerate(kinds)])
+    count = header.points.count
+    records = np.frombuffer(read_data(file, count, count * record.itemsize), record)
+    return [records[str(axis)] for axis in axes]
 
 
 def _skip(file: IO[bytes], element: _Element, order: str) -> None:
@@ -209,8 +201,4 @@ def write_ply(path: Path, points: Points) -> None:
     """Write positions (N, 3) in their own precision, as a binary file."""
     kind = "float" if points.dtype == np.float32 else "double"
     header = HEADER.format(points=len(points), kind=kind)
-    path.write_bytes(header.encode() + points.astype(points.dtype.newbyteorder("<")).tobytes())
-
-
-def _broken(problem: str) -> ValueError:
-    return ValueError(f"its header is broken: {problem}")
+    write_binary(path, header, points)
