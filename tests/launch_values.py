@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What launch and we make of launch files of one node, as rcl reads its command line.
+"""Command lines that launch and we make from launch files of one node, as rcl reads them.
 
-python launch_values.py FIRST LAST: prints, for `made_launch_values.made` of each number, a line of
-JSON with the suffix and content of the file and what launch makes of it; null if launch refuses it.
+python launch_values.py FIRST LAST: prints launch's outcome for `made_launch_values.made` of each
+number, one line of JSON each; null if launch refuses the file.
 """
 
 from __future__ import annotations
@@ -101,11 +101,9 @@ def _main() -> None:
     first, last = map(int, sys.argv[1:])
     with tempfile.TemporaryDirectory() as directory:
         environment = {**os.environ, **ros2_packages.environment(Path(directory, "packages"))}
-        launches = [made(number) for number in range(first, last)]
-        files = [write(Path(directory), number, one) for number, one in enumerate(launches)]
-        for one, outcome in zip(launches, by_launch(files, environment), strict=True):
-            line = {"suffix": one.suffix, "content": one.content, "expected": outcome}
-            print(json.dumps(line, ensure_ascii=False))
+        files = [write(Path(directory), number, made(number)) for number in range(first, last)]
+        for outcome in by_launch(files, environment):
+            print(json.dumps(outcome, ensure_ascii=False))
 
 
 if __name__ == "__main__":
