@@ -251,17 +251,6 @@ def test_what_is_not_installed_concerns_only_what_needs_it(tmp_path: Path, read:
         check(mapfile)
 
 
-def test_code_finds_directories_of_packages_that_are_not_installed(read_python: Read) -> None:
-    launch = read_python(
-        "IncludeLaunchDescription(os.path.join(share, 'launch', 'other.launch.py')), node('e')",
-        "from ament_index_python.packages import get_package_share_directory\n"
-        "    share = get_package_share_directory('absent')",
-    )
-    assert [one.label for one in launch.nodes] == ["e"]
-    assert "the package 'absent' is not installed" in launch.notices[0]
-    assert launch.notices[1].endswith(f"cannot run here: {ABSENT}")
-
-
 def test_modules_that_use_launch_get_the_stand_ins_while_a_file_is_read(
     tmp_path: Path, read: Read, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -300,18 +289,6 @@ def test_a_node_without_a_name_keeps_its_own(tmp_path: Path, read: Read) -> None
     own, named = check(mapfile).nodes
     assert not [word for word in own.argv if word.startswith("__node")]
     assert "__node:=named" in named.argv
-
-
-def test_numbers_are_what_rcl_makes_of_them(tmp_path: Path, read: Read) -> None:
-    (tmp_path / "p.yaml").write_text("/**: {ros__parameters: {list: [1e-9, 0.5]}}\n")
-    read(
-        '<launch><node exec="sh"><param from="$(dirname)/p.yaml"/>'
-        '<param name="small" value="1e-9"/></node></launch>'
-    )
-    mapfile = tmp_path / "map.yaml"
-    mapfile.write_text("launch_path: demo.launch.xml\nnodes: {sh: {cluster: 1}}\n")
-    (node,) = check(mapfile).nodes
-    assert node.parameters == {"small": 1e-9}
 
 
 def test_a_launch_file_makes_conditions_of_its_own(read_python: Read) -> None:

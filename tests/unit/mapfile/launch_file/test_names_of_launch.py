@@ -12,7 +12,6 @@ from rmw_manycore_py.mapfile.launch_file import LaunchFile, read_launch_file
 
 pytestmark = pytest.mark.unit
 
-NAMES = Path(__file__).parent / "names_of_launch.txt"
 END = """
 def generate_launch_description():
     from launch import LaunchDescription
@@ -20,26 +19,10 @@ def generate_launch_description():
 """
 
 
-def names_of_launch() -> list[tuple[str, str]]:
-    """Return the modules of launch and launch_ros, each with its public names."""
-    lines = [line for line in NAMES.read_text().splitlines() if not line.startswith("#")]
-    modules = [line.partition(":") for line in lines]
-    return [(module, name) for module, _, names in modules for name in ["", *names.split()]]
-
-
 def read(directory: Path, text: str) -> LaunchFile:
     file = directory / "demo.launch.py"
     file.write_text(text + END)
     return read_launch_file(file)
-
-
-def test_every_module_and_public_name_can_be_imported(tmp_path: Path) -> None:
-    imports = [
-        f"from {module} import {name}" if name else f"import {module}"
-        for module, name in names_of_launch()
-    ]
-    assert len(imports) > 1000
-    assert read(tmp_path, "\n".join([*imports, "def actions(): return []"])).nodes == ()
 
 
 @pytest.mark.parametrize(
@@ -109,7 +92,7 @@ def test_the_use_of_an_unsupported_name_is_refused(tmp_path: Path, use: str) -> 
         read(tmp_path, text)
 
 
-def test_an_import_on_trial_tells_what_is_supported(tmp_path: Path) -> None:
+def test_an_import_in_a_try_finds_out_what_is_supported(tmp_path: Path) -> None:
     lines = (
         "try:",
         "    from launch.actions import ExecuteProcess, DanceAction",

@@ -59,7 +59,7 @@ def test_a_node_becomes_a_command_with_ros_arguments(resolved: Check, tmp_path: 
     assert (node.full_name, node.cwd) == ("/demo/talker", tmp_path)
 
 
-def test_a_node_is_told_its_place(resolved: Check) -> None:
+def test_a_node_gets_its_place(resolved: Check) -> None:
     (node,) = resolved(
         "platform: {profile: coolidge, name: chip}\n"
         "nodes:\n  t: {cluster: 3, core: 4, script: talker.py, wait: adaptive, env: {DEPTH: 2}}\n"
@@ -168,7 +168,7 @@ def test_a_transferred_topic_takes_memory_in_each_receiving_cluster(resolved: Ch
     assert [memory.used >> 20 for memory in placement.memory[:4]] == [1, 2, 2, 0]
 
 
-def test_a_cluster_may_have_so_many_sessions(resolved: Check) -> None:
+def test_sessions_of_a_cluster_are_limited(resolved: Check) -> None:
     text = (
         "platform: coolidge\n"
         "topics: {chatter: {topic_dsm_size: 64KiB, transfer: session}}\n"
@@ -367,13 +367,6 @@ def test_topic_names_are_expanded_as_rcl_does(topic: str, full: str) -> None:
 )
 def test_parameters_keep_their_type(value: object, text: str) -> None:
     assert parameter_text(value) == text
-
-
-def test_integers_among_floats_are_floats(resolved: Check) -> None:
-    (node,) = resolved(
-        "nodes:\n  t: {cluster: 1, script: talker.py, parameters: {x: [1, 2.5]}}\n"
-    ).nodes
-    assert node.argv[-2:] == ["-p", "x:=[1.0, 2.5]"]
 
 
 def test_workers_get_the_next_free_cores_and_their_host_cpus(resolved: Check) -> None:
