@@ -295,7 +295,7 @@ def visit_all(context: LaunchContext, entities: Iterable[Any]) -> None:
 
 
 def _note_missing(context: LaunchContext, entity: Substitution) -> None:
-    """Note an action that is left out, as it comes from something that is not installed."""
+    """Note an action that comes from something not installed, and so is left out."""
     try:
         perform(context, entity)
     except UnavailableError as error:

@@ -70,13 +70,13 @@ def _output(child: subprocess.Popen[bytes], end_s: float, timeout_s: float) -> t
     read = {pipe: b"" for pipe in (child.stdout, child.stderr) if pipe is not None}
     with selectors.DefaultSelector() as selector:
         for pipe in read:
-            selector.register(pipe, selectors.EVENT_READ)
+            selector.register(pipe, selectors.EVENT_READ, pipe)
         while selector.get_map():
             ready = selector.select(max(0.0, end_s - time.monotonic()))
             if not ready:
                 raise ChildBoundError(f"no end after {timeout_s:g} s")
             for key, _ in ready:
-                pipe = next(one for one in read if one is key.fileobj)
+                pipe = key.data
                 piece = os.read(pipe.fileno(), _READ_BYTES)
                 read[pipe] += piece
                 if not piece:

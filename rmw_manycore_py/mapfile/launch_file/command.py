@@ -32,8 +32,8 @@ class Command(Substitution):
             raise LaunchFileError(f"on_stderr to be one of {', '.join(_MODES)}", f"'{mode}'")
         done = _run(context, line, captures=mode == "capture")
         if done.returncode != 0 or (done.stderr and mode == "fail"):
-            said = (done.stderr or done.stdout).strip()
-            raise UnavailableError("a command that succeeds", f"{quoted(line)}: {said}")
+            output = (done.stderr or done.stdout).strip()
+            raise UnavailableError("a command that succeeds", f"{quoted(line)}: {output}")
         if done.stderr and mode == "warn":
             context.notice(0, f"{quoted(line)} printed: {done.stderr.strip()}")
         return done.stdout

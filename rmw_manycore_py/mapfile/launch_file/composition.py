@@ -12,8 +12,8 @@ from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, join_namespace
 from rmw_manycore_py.mapfile.launch_file.frame import calling_line
 from rmw_manycore_py.mapfile.launch_file.launched import LaunchedComponent
-from rmw_manycore_py.mapfile.launch_file.parameters import evaluate_all, existing
-from rmw_manycore_py.mapfile.launch_file.ros_actions import Node, pairs
+from rmw_manycore_py.mapfile.launch_file.parameters import evaluate_all, parameters_of
+from rmw_manycore_py.mapfile.launch_file.ros_actions import Node, remappings_of
 from rmw_manycore_py.mapfile.launch_file.substitution import perform
 
 
@@ -46,7 +46,6 @@ class ComposableNode:
         name = None if self.name is None else perform(context, self.name) or None
         given = "" if self.namespace is None else perform(context, self.namespace)
         namespace = join_namespace(context.settings.namespace, given)
-        settings = context.settings
         return LaunchedComponent(
             file=context.file,
             line=self.line,
@@ -54,11 +53,8 @@ class ComposableNode:
             plugin=perform(context, self.plugin),
             name=name,
             namespace=namespace,
-            parameters=(
-                *existing(settings.parameters),
-                *evaluate_all(context, self.parameters),
-            ),
-            remappings=(*settings.remappings, *pairs(context, self.remappings)),
+            parameters=parameters_of(context, self.parameters),
+            remappings=remappings_of(context, self.remappings),
             extra_arguments=evaluate_all(context, self.extra_arguments),
         )
 

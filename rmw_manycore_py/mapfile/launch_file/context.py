@@ -30,15 +30,15 @@ class Scope:
     unset: frozenset[str] = frozenset()
 
     def copy(self) -> Scope:
-        """Return a copy, in which lists stay those of the original, as under launch."""
+        """Return a copy that shares its lists with the original, as under launch."""
         return Scope(dict(self.configurations), dict(self.environment), self.unset)
 
 
 class NodeSettings:
     """Settings of later nodes; launch_ros keeps them among the launch configurations.
 
-    They end where these are restored, reset or cleared. A list that exists already is extended in
-    place, so that what a group adds to it outlasts the group.
+    They end where these are restored, reset or cleared. An existing list is extended in place: what
+    a group adds to it outlasts the group.
     """
 
     def __init__(self, configurations: dict[str, Any]) -> None:

@@ -15,7 +15,7 @@ from rmw_manycore_py.mapfile.launch_file.unavailable import error_in
 def guarded(path: Path, function: Any, *arguments: Any, **named: Any) -> Any:
     """Call code of a launch file; convert any exception to an error in that file.
 
-    :raises UnavailableError: if the code needs something that is missing here.
+    :raises UnavailableError: if the code depends on something missing here.
     """
     try:
         return function(*arguments, **named)
@@ -34,8 +34,8 @@ def failure(path: Path, error: BaseException, near_line: int = 0) -> MapfileErro
     line = _line(path, error) or near_line
     if isinstance(error, LaunchFileError):
         return MapfileError(error.at(path, line))
-    said = _text(error)
-    found = f"{type(error).__name__}: {said}" if said else type(error).__name__
+    text = _text(error)
+    found = f"{type(error).__name__}: {text}" if text else type(error).__name__
     return MapfileError(Problem(path, line, "", "launch code that is understood here", found))
 
 

@@ -29,10 +29,9 @@ ParameterSource = dict[str, Any] | Path | ExpandedFile
 
 
 class GivenByName(ForAllNodes):
-    """Parameters of `set_parameter`: launch writes them as Python prints them.
+    """Parameters of `set_parameter`, which launch writes to the command line as Python prints them.
 
-    An array is a tuple to launch_ros, which rcl reads as a text: `(1, 2)`. For a component they
-    stay as they are.
+    An array is a tuple to launch_ros; rcl reads its `(1, 2)` as a text. Components get the tuple.
     """
 
 

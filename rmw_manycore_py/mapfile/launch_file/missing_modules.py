@@ -32,7 +32,7 @@ class MissingFinder(Loader, MetaPathFinder):
     ) -> ModuleSpec | None:
         top, _, inner = fullname.partition(".")
         frame = calling_frame()
-        if inner and top not in self._made:  # a module is missing in a package that is there
+        if inner and top not in self._made:  # the package is installed, this module is not
             return None
         if not is_launch_file(frame) or is_in_try(frame):
             return None
@@ -55,7 +55,7 @@ class MissingFinder(Loader, MetaPathFinder):
 
 
 class MissingFile:
-    """A file that cannot be read here: its content is a text that stands for it."""
+    """A file that cannot be read here: its content is a placeholder text."""
 
     def __init__(self, error: UnavailableError) -> None:
         self._error = error
@@ -70,7 +70,7 @@ class MissingFile:
         """Do nothing."""
 
     def read(self, _size: int = -1) -> str:
-        """Return the text; a parser, which would find something else wrong, gets the error."""
+        """Return the text to a launch file; raise the error to others, such as a parser."""
         if is_launch_file(calling_frame()):
             return unavailable.text_for(self._error)
         raise self._error
@@ -82,7 +82,7 @@ class MissingFile:
 
 
 def open_or_missing(file: Any, mode: str = "r", *arguments: Any, **named: Any) -> Any:
-    """Open a file; for one that cannot be read here, return one that stands for it."""
+    """Open a file, or return a MissingFile if it cannot be read here."""
     try:
         return open(file, mode, *arguments, **named)
     except OSError as error:

@@ -18,6 +18,7 @@ from rmw_manycore_py.mapfile.launch_file.typed_values import (
     SCALARS,
     boolean,
     from_yaml,
+    is_substitution,
     kind_of,
     normalise,
     perform_typed,
@@ -53,27 +54,32 @@ class ParameterFile:
     def evaluate(self, context: LaunchContext) -> ParameterSource:
         """Return the file, with its substitutions performed if it may have some."""
         path = Path(os.path.expanduser(perform(context, self.param_file)))
-        if not os.path.isfile(path):
-            if boolean(context, self.allow_substs):
-                raise UnavailableError("an existing parameter file", str(path))
-            context.notice(0, f"no such parameter file, so it is left out: {path}")
-            return {}
-        if not boolean(context, self.allow_substs):
+        has_substitutions = boolean(context, self.allow_substs)
+        if os.path.isfile(path):
+            if has_substitutions:
+                return ExpandedFile(path, perform(context, text.parse(read_text(path))))
             return path
-        return ExpandedFile(path, perform(context, text.parse(read_text(path))))
+        if has_substitutions:
+            raise _no_file(path)
+        context.notice(0, f"no such parameter file, so it is left out: {path}")
+        return {}
 
 
 def evaluate_all(context: LaunchContext, sources: Any) -> tuple[ParameterSource, ...]:
-    """Return the parameters of a node in the order in which launch gives them to rcl."""
+    """Return the values and files of a list in its order."""
     return tuple(_evaluate(context, source) for source in sources or ())
 
 
-def existing(sources: Iterable[ParameterSource]) -> Iterable[ParameterSource]:
-    """Return the settings of later nodes; unlike a node's own files, each of them has to exist."""
-    for source in sources:
+def parameters_of(context: LaunchContext, own: Any) -> tuple[ParameterSource, ...]:
+    """Return the parameters of a node in the order in which launch gives them to rcl.
+
+    Those of `set_parameter` come first; unlike the node's own files, theirs have to exist.
+    """
+    settings = context.settings.parameters
+    for source in settings:
         if isinstance(source, Path) and not os.path.isfile(source):
-            raise UnavailableError("an existing parameter file", str(source))
-        yield source
+            raise _no_file(source)
+    return (*settings, *evaluate_all(context, own))
 
 
 def flat(context: LaunchContext, source: Mapping[Any, Any]) -> dict[str, Any]:
@@ -117,7 +123,7 @@ def _flat(
 
 
 def _of_text(words: str) -> Any:
-    """Return what the text of a substitution says in YAML."""
+    """Return the value of a substitution's text, read as YAML."""
     value = from_yaml(words) if words else ""
     if isinstance(value, list):
         return _uniform(value)
@@ -129,11 +135,9 @@ def _of_text(words: str) -> Any:
 
 def _array(context: LaunchContext, items: Sequence[Any]) -> Any:
     """Return an array; texts and substitutions alone are the parts of one text."""
-    types = {type(item) for item in items}
-    if all(isinstance(item, (str, Substitution)) for item in items) and any(
-        isinstance(item, Substitution) for item in items
-    ):
+    if is_substitution(list(items)):
         return _of_text(perform(context, items))
+    types = {type(item) for item in items}
     if types and types <= {int, float}:
         return tuple(item if types == {int} else float(item) for item in items)
     return _uniform([_array_item(context, item) for item in items])
@@ -156,8 +160,12 @@ def _uniform(items: list[Any]) -> tuple[Any, ...]:
 
 
 def _usable(value: Any) -> Any:
-    """Return a value; raise UnavailableError if it needs something that is missing here."""
+    """Return a value; raise UnavailableError if it depends on something missing here."""
     for item in value if isinstance(value, list) else (value,):
         if isinstance(item, str):
             unavailable.available(item)
     return value
+
+
+def _no_file(path: Path) -> UnavailableError:
+    return UnavailableError("an existing parameter file", str(path))

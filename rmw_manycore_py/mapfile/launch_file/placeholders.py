@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a launch file imports although it is not supported or not installed: it fails when used."""
+"""Placeholders for imports that are not supported or not installed; they fail when used."""
 
 from __future__ import annotations
 
@@ -43,16 +43,16 @@ class Unsupported:
 
 
 class Missing(Substitution):
-    """Something of a Python module that is not installed, or that such a thing gives.
+    """Anything from a Python module that is not installed.
 
-    It may be called and passed on: the node that gets it as a value cannot run here.
+    It may be called and passed on; a node that gets it as a value cannot run here.
     """
 
     def __init__(self, error: UnavailableError) -> None:
         self._error = error
 
     def _fail(self, *_arguments: Any) -> NoReturn:
-        raise UnavailableError(self._error.expected, self._error.found)
+        raise reason_of(self)
 
     def _more(self, *_arguments: Any, **_named: Any) -> Missing:
         return self
@@ -80,5 +80,5 @@ class Missing(Substitution):
 
 
 def reason_of(missing: Missing) -> UnavailableError:
-    """Return why something is missing."""
+    """Return a new error that names what is missing."""
     return UnavailableError(missing._error.expected, missing._error.found)

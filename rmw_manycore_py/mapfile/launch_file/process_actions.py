@@ -82,7 +82,7 @@ class ProcessAction(Action):
         return tuple(shlex.split(perform(context, own if given is None else given)))
 
     def known(self, context: LaunchContext) -> LaunchedNode:
-        """Return the process as far as it is known although it cannot run here."""
+        """Return the known part of a process that cannot run here."""
         raise NotImplementedError
 
     @override
@@ -157,7 +157,7 @@ class ExecuteProcess(ProcessAction):
 
 
 def known_text(context: LaunchContext, value: Any) -> str | None:
-    """Return a text, or None if it is missing or wrong: for what cannot run anyway."""
+    """Return a text; None if it is missing or wrong, for a process that cannot run anyway."""
     try:
         return perform(context, value)
     except LaunchFileError:

@@ -20,7 +20,7 @@ from rmw_manycore_py.mapfile.launch_file.reading_process import read_in_child
 from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError
 from rmw_manycore_py.mapfile.launch_file.stand_ins import install_stand_ins
 
-# What a sourced ROS 2 sets, and code of launch files asks for; the wheels need no sourcing.
+# Variables of a sourced ROS 2 that launch files read; the wheels need no sourcing.
 _ROS_ENVIRONMENT = {"ROS_DISTRO": "jazzy", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
 
 FRONTENDS.update(

@@ -90,7 +90,7 @@ def _run(file: Path, read: Callable[[], Any], answers: BinaryIO) -> NoReturn:
 
 
 def _read_nothing_from_stdin() -> None:
-    """Give code that asks for input an empty one, instead of the terminal of the user."""
+    """Replace the user's terminal by an empty input."""
     with open(os.devnull) as nothing:
         os.dup2(nothing.fileno(), 0)
     sys.stdin = open(0, closefd=False)  # noqa: SIM115  # until the process ends

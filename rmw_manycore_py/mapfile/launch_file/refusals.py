@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is wrong with a launch file, and what this machine lacks for it."""
+"""Errors of launch files, and of what this machine lacks for them."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, join_namespace
 from rmw_manycore_py.mapfile.launch_file.events import change_state
 from rmw_manycore_py.mapfile.launch_file.launched import LaunchedNode
-from rmw_manycore_py.mapfile.launch_file.parameters import evaluate_all, existing, flat
+from rmw_manycore_py.mapfile.launch_file.parameters import flat, parameters_of
 from rmw_manycore_py.mapfile.launch_file.process_actions import ProcessAction, known_text
 from rmw_manycore_py.mapfile.launch_file.substitution import perform
 
@@ -74,7 +74,7 @@ class Node(ProcessAction):
         self.known_name = full_name
         options = self.evaluate_options(context)
         executable = perform(context, self.executable)
-        settings = context.settings
+        has_namespace = self.namespace is not None or bool(context.settings.namespace)
         package = None if self.package is None else perform(context, self.package)
         context.nodes.append(
             LaunchedNode(
@@ -85,15 +85,12 @@ class Node(ProcessAction):
                 package=package,
                 executable=executable,
                 command=() if package else (executable,),
-                parameters=(
-                    *existing(settings.parameters),
-                    *evaluate_all(context, self.parameters),
-                ),
-                remappings=(*settings.remappings, *pairs(context, self.remappings)),
+                parameters=parameters_of(context, self.parameters),
+                remappings=remappings_of(context, self.remappings),
                 arguments=tuple(perform(context, word) for word in self.arguments or ()),
                 ros_arguments=tuple(perform(context, word) for word in self.ros_arguments or ()),
                 env=options.env,
-                is_fully_named=name is not None and self._has_namespace(context),
+                is_fully_named=name is not None and has_namespace,
                 serial=context.serial(self),
                 prefix=options.prefix,
                 cwd=options.cwd,
@@ -102,13 +99,11 @@ class Node(ProcessAction):
             )
         )
 
-    def _has_namespace(self, context: LaunchContext) -> bool:
-        return self.namespace is not None or bool(context.settings.namespace)
 
-
-def pairs(context: LaunchContext, remappings: Any) -> list[tuple[str, str]]:
-    """Return remappings as texts."""
-    return [(perform(context, one), perform(context, other)) for one, other in remappings or ()]
+def remappings_of(context: LaunchContext, own: Any) -> tuple[tuple[str, str], ...]:
+    """Return the remappings of a node, those of `set_remap` first."""
+    evaluated = ((perform(context, old), perform(context, new)) for old, new in own or ())
+    return (*context.settings.remappings, *evaluated)
 
 
 class LifecycleNode(Node):

@@ -158,9 +158,8 @@ _CONTENTS: dict[str, dict[str, Any]] = {
 class StandInFinder(Loader, MetaPathFinder):
     """Makes every module of launch when it is imported.
 
-    A name in it is sought in the module, in the packages above, and then in all of launch: launch
-    has a module per class, and moves classes between them. What is found nowhere fails when it is
-    used.
+    Launch has a module per class, and moves classes between them. So a name is looked up in the
+    module, in the packages above it, and then in all of launch. An unknown name fails when used.
     """
 
     @override
@@ -193,7 +192,10 @@ def _is_known_module(dotted: str) -> bool:
 
 
 def find_name(dotted: str) -> Any:
-    """Return a module or name of launch; unless it is imported on trial, it may be unsupported."""
+    """Return a module or name of launch, if need be as Unsupported.
+
+    :raises AttributeError: for an unknown name that is imported in a `try`.
+    """
     if dotted in _CONTENTS:
         return importlib.import_module(dotted)
     place, _, name = dotted.rpartition(".")
@@ -224,20 +226,17 @@ def install_stand_ins(context: LaunchContext) -> None:
 
 
 def _make_index_lenient(context: LaunchContext) -> None:
-    """Give packages that are not installed a directory that stands for theirs.
-
-    Code that looks up such a package on trial is told the truth.
-    """
+    """Give packages that are not installed a placeholder directory; a lookup in a `try` fails."""
 
     def prefix_of(package: str) -> Path:
-        found = ament.package_prefix(package)
-        if found is None and is_in_try(calling_frame()):
+        if (found := ament.package_prefix(package)) is not None:
+            return found
+        if is_in_try(calling_frame()):
             raise packages.PackageNotFoundError(package)
-        if found is None:
-            context.notice(
-                0, f"the package '{package}' is not installed; what needs it cannot run here"
-            )
-        return found or s.missing_prefix(package)
+        context.notice(
+            0, f"the package '{package}' is not installed; what needs it cannot run here"
+        )
+        return s.missing_prefix(package)
 
     def share_of(package: str, **_options: Any) -> Path:
         return prefix_of(package) / "share" / package

@@ -15,19 +15,22 @@ from rmw_manycore_py.mapfile.launch_file import unavailable
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
 from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError, UnavailableError
 
+# Texts of conditions, in lower case.
+BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+
 
 class Substitution:
     """A text that is evaluated while the launch file is read.
 
-    Code of a launch file that evaluates one gets, for what is missing here, a text that stands for
-    it: only what uses the text fails.
+    Where something is missing here, code of a launch file gets a placeholder text: only what uses
+    it fails.
     """
 
     def __init__(self) -> None:
         """Accept the call from subclasses in launch files."""
 
     def __init_subclass__(cls) -> None:
-        """Make the subclass's `perform` return a text for what is missing here."""
+        """Make the subclass's `perform` return a placeholder for what is missing here."""
         if "perform" in vars(cls):
             original = cls.perform
 
@@ -65,13 +68,13 @@ class TextSubstitution(Substitution):
 def perform(context: LaunchContext, value: Any) -> str:
     """Evaluate a string, a substitution, or a sequence of these.
 
-    :raises UnavailableError: if the text needs something that is missing here.
+    :raises UnavailableError: if the text depends on something missing here.
     """
     return unavailable.available(text_or_missing(context, value))
 
 
 def text_or_missing(context: LaunchContext, value: Any) -> str:
-    """Evaluate as `perform` does, but return a text that stands for what is missing here."""
+    """Evaluate as `perform` does, but return a placeholder for what is missing here."""
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
     if isinstance(value, Substitution):
@@ -87,6 +90,7 @@ def text_or_missing(context: LaunchContext, value: Any) -> str:
 def condition_holds(context: LaunchContext, value: Any) -> bool:
     """Evaluate the condition of an action: true, false, 1 or 0, in any case."""
     text = str(value) if isinstance(value, bool) else perform(context, value)
-    if text.strip().lower() not in ("true", "false", "1", "0"):
+    holds = BOOLEANS.get(text.strip().lower())
+    if holds is None:
         raise LaunchFileError("a condition that is true, false, 1 or 0", repr(text))
-    return text.strip().lower() in ("true", "1")
+    return holds

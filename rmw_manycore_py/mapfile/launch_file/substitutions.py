@@ -16,7 +16,7 @@ from rmw_manycore_py.errors import shorten
 from rmw_manycore_py.mapfile.launch_file import expression, unavailable
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
 from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError, UnavailableError
-from rmw_manycore_py.mapfile.launch_file.substitution import Substitution, perform
+from rmw_manycore_py.mapfile.launch_file.substitution import BOOLEANS, Substitution, perform
 from rmw_manycore_py.mapfile.launch_file.typed_values import is_substitution, truth
 from rmw_manycore_py.ros import ament
 
@@ -42,7 +42,7 @@ class LaunchConfiguration(Substitution):
 
 
 def default_parts(default: Any) -> list[Any]:
-    """Return the parts of a default value; what is no text becomes one."""
+    """Return the parts of a default value, other values than texts as text."""
     is_one = isinstance(default, (str, Substitution)) or not isinstance(default, Iterable)
     items = [default] if is_one else list(default)
     return [item if isinstance(item, (str, Substitution)) else str(item) for item in items]
@@ -89,7 +89,7 @@ class FindPackageShare(FindPackagePrefix):
 
 
 def missing_prefix(package: str) -> Path:
-    """Return the prefix that stands for that of a package that is not installed."""
+    """Return a placeholder for the prefix of a package that is not installed."""
     return Path(unavailable.text_for(unavailable.missing_package(package)))
 
 
@@ -237,8 +237,8 @@ class EqualsSubstitution(_Logic):
     @override
     def holds(self, context: LaunchContext) -> bool:
         one, other = (perform(context, operand) for operand in self.operands)
-        if one.lower() in _BOOLEANS and other.lower() in _BOOLEANS:
-            return _BOOLEANS[one.lower()] == _BOOLEANS[other.lower()]
+        if one.lower() in BOOLEANS and other.lower() in BOOLEANS:
+            return BOOLEANS[one.lower()] == BOOLEANS[other.lower()]
         try:
             return math.isclose(float(one), float(other))
         except ValueError:
@@ -251,9 +251,6 @@ class NotEqualsSubstitution(EqualsSubstitution):
     @override
     def holds(self, context: LaunchContext) -> bool:
         return not super().holds(context)
-
-
-_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
 def _as_operand(value: Any) -> Any:

@@ -107,9 +107,9 @@ class _Reader:
         arguments = self._arguments()
         if name not in _BY_NAME:
             raise LaunchFileError(f"one of the substitutions {', '.join(_BY_NAME)}", f"'$({name})'")
-        fewest, most, make = _BY_NAME[name]
-        if not fewest <= len(arguments) <= most:
-            count = f"{fewest}" if fewest == most else f"{fewest} to {most}"
+        min_count, max_count, make = _BY_NAME[name]
+        if not min_count <= len(arguments) <= max_count:
+            count = f"{min_count}" if min_count == max_count else f"{min_count} to {max_count}"
             raise LaunchFileError(f"{count} argument(s) of $({name})", str(len(arguments)))
         self._depth -= 1
         return make(*arguments)

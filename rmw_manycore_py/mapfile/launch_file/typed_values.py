@@ -127,28 +127,23 @@ def normalise(value: Any, kind: Kind | None) -> Any:
     types = {type(item) for item in items} - {Parts}
     if kind is not None and not kind.is_list:
         raise _not_of(kind, value)
-    wanted = None if kind is None else kind.scalar
     if items and not types:
         return items
     for scalar in (str, bool, int):
         if types <= {scalar}:
-            return _all_of(items, scalar, wanted, kind)
+            return _all_of(items, scalar, kind)
     if types <= {int, float}:
         values = [item if isinstance(item, Parts) else float(item) for item in items]
-        return _all_of(values, float, wanted, kind)
+        return _all_of(values, float, kind)
     raise LaunchFileError("a list of values of one type", repr(value))
 
 
 def perform_typed(context: LaunchContext, value: Any, kind: Kind | None) -> Any:
-    """Evaluate a normalised value."""
+    """Evaluate a value that is normalised for the same kind."""
     if isinstance(value, Parts):
         return coerce(perform(context, value.parts), kind)
     if not isinstance(value, list):
-        if kind is not None and not is_of_kind(value, kind):
-            raise _not_of(kind, value)
         return value
-    if kind is not None and not kind.is_list:
-        raise _not_of(kind, value)
     scalar = None if kind is None else Kind(kind.scalar)
     items = [
         coerce(perform(context, item.parts), scalar) if isinstance(item, Parts) else item
@@ -170,10 +165,10 @@ def truth(context: LaunchContext, operand: Any) -> bool:
 
 
 def from_yaml(text: str) -> Any:
-    """Return what a text says in YAML 1.1; raise LaunchFileError if it says nothing."""
+    """Return the value of a text in YAML 1.1; raise LaunchFileError if it has none."""
     try:
         return yaml.safe_load(text)
-    except Exception as error:  # also numbers and dates that do not exist, and depth
+    except Exception as error:  # impossible numbers and dates, or depth, raise errors of their own
         raise LaunchFileError("a value in YAML", repr(text)) from error
 
 
@@ -206,12 +201,13 @@ def _parts(value: Any) -> Parts:
     return Parts((value,) if isinstance(value, Substitution) else tuple(value))
 
 
-def _all_of(items: list[Any], scalar: type, wanted: type | None, kind: Kind | None) -> list[Any]:
-    if wanted not in (None, scalar):
+def _all_of(items: list[Any], scalar: type, kind: Kind | None) -> list[Any]:
+    if kind is not None and kind.scalar is not scalar:
         raise _not_of(kind, items)
     return items
 
 
 def _not_of(kind: Kind | None, found: Any) -> LaunchFileError:
-    expected = "a bool, number, text or list of one of them" if kind is None else str(kind)
-    return LaunchFileError(expected if kind is None else f"a value of type {expected}", repr(found))
+    if kind is None:
+        return LaunchFileError("a bool, number, text or list of one of them", repr(found))
+    return LaunchFileError(f"a value of type {kind}", repr(found))

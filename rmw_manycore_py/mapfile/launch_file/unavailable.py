@@ -1,8 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Texts that stand for what this machine lacks, each with the reason.
+"""Placeholder texts for what this machine lacks, each with the reason.
 
-Code of a launch file joins such a text with others and passes it on, as a path or as a value. What
-finally uses the result cannot run here. A process reads one launch file, so it has one registry.
+Code of a launch file may join a placeholder with other texts, and pass it on as a path or a value.
+The node that uses the result cannot run here. A process reads one launch file: one registry is
+enough.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ _errors: list[UnavailableError] = []
 
 
 def text_for(error: UnavailableError) -> str:
-    """Return the text that stands for what is missing."""
+    """Return the placeholder for what is missing."""
     for number, known in enumerate(_errors):
         if (known.expected, known.found) == (error.expected, error.found):
             return f"{_ROOT}{number}"
@@ -36,7 +37,7 @@ def error_in(text: str) -> UnavailableError | None:
 
 
 def available(text: str) -> str:
-    """Return the text; raise UnavailableError if part of it stands for something missing."""
+    """Return the text; raise UnavailableError if it contains a placeholder."""
     error = error_in(text)
     if error is not None:
         raise error
