@@ -22,6 +22,11 @@ def full_node_name(namespace: str, name: str) -> str:
     return f"/{namespace.strip('/')}/{name}".replace("//", "/")
 
 
+def file_stem(full_name: str) -> str:
+    """Return a file name for a node, without suffix; unique, since ROS 2 names have no dots."""
+    return full_name.strip("/").replace("/", ".")
+
+
 def node_names_by_process(nodes: Iterable[NodeInfo]) -> defaultdict[int, list[str]]:
     """Return the full names of the nodes of each process, by its slot; none for other slots."""
     names: defaultdict[int, list[str]] = defaultdict(list)

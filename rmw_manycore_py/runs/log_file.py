@@ -9,6 +9,8 @@ from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
+from rmw_manycore_py.ros.names import file_stem
+
 # Limit per node in a run of few nodes; many nodes share MAX_RUN_BYTES.
 MAX_NODE_BYTES = 8 << 20
 MIN_NODE_BYTES = 64 << 10
@@ -19,13 +21,13 @@ TIME_CHARACTERS = len("2026-01-01T00:00:00.000000Z")
 
 
 def share_of(nodes: int) -> int:
-    """Return the limit in bytes for each of so many nodes."""
+    """Return the limit in bytes for each of `nodes` nodes."""
     return max(min(MAX_NODE_BYTES, MAX_RUN_BYTES // max(nodes, 1)), MIN_NODE_BYTES)
 
 
 def log_path(directory: Path, node: str, suffix: str = SUFFIX) -> Path:
-    """Return the log path of a node; unique, since ROS 2 names have no dots."""
-    return directory / f"{node.strip('/').replace('/', '.')}{suffix}"
+    """Return the log path of a node."""
+    return directory / f"{file_stem(node)}{suffix}"
 
 
 class LogFile:

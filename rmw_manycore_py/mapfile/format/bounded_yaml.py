@@ -80,8 +80,9 @@ class BoundedLoader(yaml.SafeLoader):
 
     def is_untyped(self, node: yaml.ScalarNode) -> bool:
         """Return whether a scalar has neither quotes nor a tag."""
-        resolved = self.resolve(yaml.ScalarNode, node.value, (True, False))  # type: ignore[no-untyped-call]
-        return node.style is None and node.tag == resolved
+        resolver: Any = self  # untyped
+        tag = resolver.resolve(yaml.ScalarNode, node.value, (True, False))
+        return node.style is None and node.tag == tag
 
     def _check(self, event: Any) -> None:
         if self._deepest > MAX_DEPTH:

@@ -50,7 +50,7 @@ def refused_scheduling(nodes: Sequence[PlacedNode]) -> Iterator[str]:
 def overruled_prefixes(
     starts: Mapping[str, NodeStart], nodes: Sequence[PlacedNode]
 ) -> Iterator[str]:
-    """Yield nodes with a launch prefix that says otherwise than the mapfile where they run."""
+    """Yield nodes whose launch prefix contradicts the placement of the mapfile."""
     for node in nodes:
         start = starts[node.name]
         if placed_again(start.program.prefix, node.host_cpu, node.scheduling):

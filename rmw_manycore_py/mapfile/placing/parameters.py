@@ -50,10 +50,6 @@ class GeneratedFile:
     name: str
     text: str
 
-    @override
-    def __str__(self) -> str:
-        return self.name
-
 
 @dataclass(frozen=True)
 class NodeName:
@@ -85,13 +81,13 @@ def sources_of(
 
 
 def given_values(
-    sources: Iterable[Source], launched: Launched | None, full_name: str
+    sources: Sequence[Source], launched: Launched | None, full_name: str
 ) -> dict[str, Any]:
     """Return the effective parameters that are not in the user's files."""
-    sources = tuple(sources)
-    if all(map(_is_file, sources)) and not any(_parameter_options(launched)):
+    files = [source for source in sources if isinstance(source, Path)]
+    if len(files) == len(sources) and not any(_parameter_options(launched)):
         return {}
-    from_files = values_for(read_all(filter(_is_file, sources)), full_name)
+    from_files = values_for(read_all(files), full_name)
     effective = values_for(read_all(sources, launched), full_name)
     return {
         name: value
@@ -110,7 +106,7 @@ def read_all(sources: Iterable[Source], launched: Launched | None = None) -> Sec
         for option, word in _parameter_options(launched):
             if option != _FILE_OPTION:
                 _add_option(read, word, launched)
-            elif os.path.isfile(word):  # else the node, in its own directory, has to tell
+            elif os.path.isfile(word):  # else it may exist in the node's own directory
                 add_file(read, Path(word))
         for source in sources:
             if isinstance(source, Path):
@@ -158,15 +154,11 @@ def _typed_by_rcl(source: Mapping[str, Any], launched: Launched) -> dict[str, An
 
 
 class _Dumper(yaml.SafeDumper):
-    """Writes lists that occur twice in full: rcl refuses aliases."""
+    """Writes repeated lists in full, since rcl refuses aliases."""
 
     @override
     def ignore_aliases(self, data: Any) -> bool:
         return True
-
-
-def _is_file(source: Source) -> bool:
-    return isinstance(source, Path)
 
 
 def _parameter_options(launched: Launched | None) -> Iterator[tuple[str, str]]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rmw_manycore_py.mapfile.placing.parameters import GeneratedFile, Source, words_of
+from rmw_manycore_py.ros.names import file_stem
 from rmw_manycore_py.routes import DIRECTIONS, Direction, Route
 from rmw_manycore_py.scheduling import Scheduling
 from rmw_manycore_py.topology import Core, Topology
@@ -102,8 +103,8 @@ class PlacedNode:
 
     @property
     def file_stem(self) -> str:
-        """Unique name for files of the node; ROS 2 names have no dots."""
-        return self.name.strip("/").replace("/", ".")
+        """Unique name for files of the node."""
+        return file_stem(self.name)
 
     @property
     def argv(self) -> list[str]:

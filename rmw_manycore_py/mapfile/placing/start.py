@@ -51,7 +51,7 @@ class NodeStart:
 
 
 def node_start(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> NodeStart:
-    """Return how a node is started; if its program does not exist, why."""
+    """Return how a node is started, or in `missing` why its program does not exist."""
     node = mapfile.sections.nodes[name]
     launched = find_launched(mapfile, name, launch)
     namespace, full_name = _names(name, node, launched)
@@ -63,11 +63,11 @@ def node_start(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> NodeSt
     sources: tuple[Source, ...] = ()
     if takes_arguments:
         sources = sources_of(launched, files, node.parameters, NodeName(full_name, is_named))
-    program, missing = Program((), None), tuple[Problem, ...]()
+    missing: tuple[Problem, ...] = ()
     try:
         program = _program(mapfile, name, node, launched)
     except MapfileError as error:
-        missing = error.problems
+        program, missing = Program(()), error.problems
     return NodeStart(
         full_name=full_name,
         program=program,
