@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Long times without messages, as where a clock was set or rolled over."""
+"""Long gaps between messages, for example where a clock was set or rolled over."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mcap.data_stream import ReadDataStream
 from mcap.records import Chunk, ChunkIndex, Message
 from mcap.stream_reader import breakup_chunk
 
-from rmw_manycore_py.recording.index import Index
+from rmw_manycore_py.recording.index import Index, content_at
 
 Times: TypeAlias = npt.NDArray[np.uint64]
 
@@ -34,8 +34,8 @@ class Gap(NamedTuple):
 
 def busy_times(file: IO[bytes], index: Index, min_gap_ns: int) -> BusyTimes:
     """Return intervals with messages; reads only chunks that may have a gap of this length."""
-    starts, ends = [np.frombuffer(index.bare.times, np.uint64)], []
-    ends.append(starts[0])
+    bare = np.frombuffer(index.bare.times, np.uint64)
+    starts, ends = [bare], [bare]
     first_ns = index.statistics.message_start_time
     for chunk in index.summary.chunk_indexes:
         start_ns, end_ns = chunk.message_start_time, chunk.message_end_time
@@ -50,8 +50,8 @@ def busy_times(file: IO[bytes], index: Index, min_gap_ns: int) -> BusyTimes:
 
 
 def _times_in(file: IO[bytes], chunk: ChunkIndex) -> Times:
-    file.seek(chunk.chunk_start_offset + 9)
-    records = breakup_chunk(Chunk.read(ReadDataStream(BytesIO(file.read(chunk.chunk_length)))))
+    content = content_at(file, chunk.chunk_start_offset)
+    records = breakup_chunk(Chunk.read(ReadDataStream(BytesIO(content))))
     return np.array([one.log_time for one in records if isinstance(one, Message)], np.uint64)
 
 

@@ -40,9 +40,8 @@ class BareMessages:
 
     def read(self, file: IO[bytes], at: int) -> Message:
         """Read one of them."""
-        file.seek(self.offsets[at])
-        _, length = _HEAD.unpack(file.read(_HEAD.size))
-        found: Message = Message.read(ReadDataStream(BytesIO(file.read(length))), length)
+        content = content_at(file, self.offsets[at])
+        found: Message = Message.read(ReadDataStream(BytesIO(content)), len(content))
         return found
 
 
@@ -74,6 +73,13 @@ class _Place(NamedTuple):
         return self.start + _HEAD.size + self.length
 
 
+def content_at(file: IO[bytes], start: int) -> bytes:
+    """Return the content of the record at an offset."""
+    file.seek(start)
+    _, length = _HEAD.unpack(file.read(_HEAD.size))
+    return file.read(length)
+
+
 def index_of(file: IO[bytes], size_bytes: int) -> Index:
     """Return the index of a file that begins like an MCAP file."""
     summary = _own_summary(file, size_bytes)
@@ -91,10 +97,10 @@ def _own_summary(file: IO[bytes], size_bytes: int) -> Summary:
 
 
 def _own(file: IO[bytes], size_bytes: int, summary: Summary) -> Index | None:
-    """Return the file's own index; None if something is not in it.
+    """Return the file's own index; None if it is incomplete.
 
-    A summary need not repeat schemas and channels, nor have statistics and an index of each chunk,
-    and there may be messages outside of chunks. Only what is between the chunks is read.
+    A summary may lack schemas, channels, statistics, and the index of a chunk, and messages may be
+    outside of chunks. Reads only the records between the chunks.
     """
     if not _is_complete(summary):
         return None
@@ -109,7 +115,7 @@ def _own(file: IO[bytes], size_bytes: int, summary: Summary) -> Index | None:
         for place in _places(file, size_bytes, ends):
             if place.opcode in (Opcode.MESSAGE, Opcode.CHUNK):
                 return None
-            _add(file, place, index, _Counts())  # metadata: all else is in the summary
+            _add(file, place, index, _Counts())  # for metadata; the rest is in the summary
     except Exception:  # the summary is damaged
         return None
     return index
@@ -131,8 +137,8 @@ def _places(
 ) -> Iterator[_Place]:
     """Yield the records of the data section.
 
-    :param skipped: offsets from where to continue at others, each once.
-    :raises EOFError: if the file ends before.
+    :param skipped: ends of ranges to skip, by their starts; emptied.
+    :raises EOFError: if the file ends within the section.
     """
     at = len(MCAP0_MAGIC)
     while True:
@@ -154,7 +160,7 @@ def _places(
 
 
 def _scanned(file: IO[bytes], size_bytes: int, summary: Summary) -> Index:
-    """Index what is complete, from the start; the summary may have topics without messages."""
+    """Index the complete records; the summary may add topics without messages."""
     index, counts = Index(), _Counts()
     index.summary.schemas, index.summary.channels = summary.schemas, summary.channels
     end = len(MCAP0_MAGIC)
@@ -174,7 +180,7 @@ def _scanned(file: IO[bytes], size_bytes: int, summary: Summary) -> Index:
 
 
 def _add(file: IO[bytes], place: _Place, index: Index, counts: _Counts) -> None:
-    stream = _content(file, place)
+    stream = ReadDataStream(BytesIO(file.read(place.length)))
     if place.opcode == Opcode.CHUNK:
         chunk = Chunk.read(stream)
         for record in breakup_chunk(chunk, validate_crc=True):
@@ -204,10 +210,6 @@ def _add_record(record: object, index: Index, counts: _Counts) -> None:
         if record.channel_id not in index.summary.channels:
             raise ValueError(f"a message of the unknown channel {record.channel_id}")
         counts.add(record)
-
-
-def _content(file: IO[bytes], place: _Place) -> ReadDataStream:
-    return ReadDataStream(BytesIO(file.read(place.length)))
 
 
 class _Counts:

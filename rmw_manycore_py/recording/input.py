@@ -107,7 +107,7 @@ class Input:
 
         :raises ManycoreError: where the file is damaged.
         """
-        with self._damage_told():
+        with self._reported_damage():
             for found in heapq.merge(
                 self._in_chunks(topics, start_ns, end_ns),
                 self._outside_chunks(topics, start_ns, end_ns),
@@ -137,7 +137,7 @@ class Input:
 
     def busy_times(self, min_gap_ns: int) -> BusyTimes:
         """Return intervals (ns) with messages that have no gap of this length."""
-        with self._damage_told():
+        with self._reported_damage():
             return busy_times(self._file, self._index, min_gap_ns)
 
     def close(self) -> None:
@@ -145,7 +145,7 @@ class Input:
         self._file.close()
 
     @contextmanager
-    def _damage_told(self) -> Iterator[None]:
+    def _reported_damage(self) -> Iterator[None]:
         try:
             yield
         except ManycoreError:

@@ -130,7 +130,7 @@ def own_metadata(records: Mapping[str, Mapping[str, str]]) -> dict[str, Any]:
     record = records.get(_RECORD, {})
     try:
         found = yaml.safe_load(record.get("serialized_metadata", ""))
-    except Exception:  # informational only
+    except Exception:  # the messages can be read without it
         found = None
     # A file that rosbag2 has not finished has only the distribution.
     distro = {"ros_distro": record["ROS_DISTRO"]} if "ROS_DISTRO" in record else {}

@@ -57,7 +57,7 @@ def offers_in(text: str) -> list[Qos]:
     try:
         profiles = yaml.safe_load(text) or []
         return [_offer(profile) for profile in profiles]
-    except Exception as error:  # other programs write what they like
+    except Exception as error:  # other programs may write anything here
         raise ValueError(f"no QoS profiles: {error!r}") from error
 
 

@@ -62,7 +62,7 @@ class Recording:
 
     @property
     def remarks(self) -> list[str]:
-        """Return what was left out of its topics."""
+        """Return notes on QoS profiles that were left out."""
         return [remark for one in self._inputs for remark in one.remarks]
 
     def gaps(self, min_gap_ns: int) -> list[Gap]:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Notices of long times without messages in what is to be played."""
+"""Notices of long gaps in a recording that is to be played."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _UNITS = ((365.25 * 86400, "years"), (86400.0, "days"), (3600.0, "hours"))
 
 
 def gap_notices(recording: Recording, start_ns: int, end_ns: int) -> Iterator[str]:
-    """Yield a notice for each long gap between two times, and what leaves it out."""
+    """Yield a notice for each long gap between two times, with the options that skip it."""
     gaps = [g for g in recording.gaps(MIN_GAP_NS) if start_ns <= g.start_ns and g.end_ns <= end_ns]
     for gap in gaps[:_MAX_NOTICES]:
         before_s, after_s = (

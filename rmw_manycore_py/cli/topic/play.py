@@ -21,19 +21,19 @@ from rmw_manycore_py.recording.mcap_support import require_library
 from rmw_manycore_py.recording.selection import Selection
 from rmw_manycore_py.ros.names import expand
 
-_MAX = 1e12
+_MAX_NUMBER = 1e12
 _CLOCK_HZ = 40.0  # as `ros2 bag play --clock`
 
 
 class _Number(click.FloatRange):
-    """A range of numbers that can be counted in nanoseconds: neither nan nor infinite."""
+    """A range of finite numbers whose value in nanoseconds fits."""
 
     def convert(
         self, value: Any, param: click.Parameter | None, context: click.Context | None
     ) -> float:
         number = float(super().convert(value, param, context))
-        if not abs(number) <= _MAX:
-            self.fail(f"expected a number up to {_MAX:g}, found {value}.", param, context)
+        if not abs(number) <= _MAX_NUMBER:
+            self.fail(f"expected a number up to {_MAX_NUMBER:g}, found {value}.", param, context)
         return number
 
 

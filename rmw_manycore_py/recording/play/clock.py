@@ -14,7 +14,7 @@ from rmw_manycore_py.recording.play.stage import RawPublisher, Stage
 
 _TYPE = "rosgraph_msgs/msg/Clock"
 _NS_PER_S = 1_000_000_000
-_MAX_SECONDS = 2**31 - 1  # of builtin_interfaces/msg/Time: in 2038
+_MAX_SECONDS = 2**31 - 1  # of builtin_interfaces/msg/Time, which ends in 2038
 
 
 class Clock:
@@ -48,7 +48,7 @@ class Clock:
 
 
 def clock_message(time_ns: int) -> bytes:
-    """Return a serialized rosgraph_msgs/msg/Clock; times after its last one are that one."""
+    """Return a serialized rosgraph_msgs/msg/Clock; later times become the last that it holds."""
     seconds, rest = divmod(time_ns, _NS_PER_S)
     if seconds > _MAX_SECONDS:
         seconds, rest = _MAX_SECONDS, _NS_PER_S - 1

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Long times without messages, and what is said about them before playing."""
+"""Long gaps between messages, and the notices of them before playing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ HOUR_S = 3600.0
 
 
 @pytest.mark.parametrize("each", [0, 1, 2])
-def test_each_long_gap_is_told_with_what_leaves_it_out(tmp_path: Path, each: int) -> None:
+def test_each_long_gap_is_reported_with_options_that_skip_it(tmp_path: Path, each: int) -> None:
     times_s = [0.0, 12.5, 12.5 + HOUR_S - 1, 20_000.5, 2 * YEAR_S, 2 * YEAR_S + 1]
     texts = [("/a", time_s, "text") for time_s in times_s]
     with Recording(write_texts(tmp_path / "a.mcap", texts, each=each)) as recording:

@@ -247,7 +247,7 @@ def test_a_missing_file_of_a_folder_is_named(tmp_path: Path) -> None:
     assert "cannot be read: embedded null byte" in refusal(folder)
 
 
-def test_a_damaged_chunk_is_said(tmp_path: Path) -> None:
+def test_a_damaged_chunk_is_reported(tmp_path: Path) -> None:
     path = write_texts(tmp_path / "a.mcap", TEXTS, each=3)
     data = bytearray(path.read_bytes())
     data[data.index(b"text 7")] ^= 1
