@@ -127,7 +127,7 @@ class Matcher:
         points: int = 0,  # noqa: ARG002 - on the calling thread nothing is shared
         next_map: VoxelMap | None = None,  # noqa: ARG002
     ) -> int:
-        """Return the bytes shared with other processes after aligning a scan of so many points.
+        """Return the bytes shared with other processes after aligning a scan of `points` points.
 
         :param next_map: map about to replace the current one; both are held during the swap.
         """

@@ -29,27 +29,27 @@ class CloudError(ValueError):
     """An inconsistent PointCloud2, or one without positions."""
 
 
-def decode(message: Any, most: int | None = None) -> Points:
+def decode(message: Any, max_count: int | None = None) -> Points:
     """Return the positions (N, 3) of a PointCloud2, in its frame; raises CloudError.
 
     Accepts organised clouds, padding, any field order, byte order and number type. Drops points
     that are not finite or beyond 1e9 m. float64 if the message's are, else float32.
 
-    :param most: choose at most so many points of a larger cloud (:func:`spread_indices`), and
-        decode these alone.
+    :param max_count: sample this many points of a larger cloud (:func:`spread_indices`), and decode
+        only these.
     """
     fields = _position_fields(message)
-    flat = _positions(message, fields, _chosen(message, fields, most))
+    flat = _positions(message, fields, _chosen(message, fields, max_count))
     is_place = places(flat)
     return flat if is_place.all() else flat[is_place]
 
 
-def decode_with(message: Any, name: str, most: int | None = None) -> tuple[Points, Column]:
+def decode_with(message: Any, name: str, max_count: int | None = None) -> tuple[Points, Column]:
     """Return the result of decode(), and another field (N) of these points; raises CloudError."""
     if not _has_points(message):
         return np.zeros((0, 3), np.float32), np.zeros(0)
     fields = _position_fields(message)
-    chosen = _chosen(message, fields, most)
+    chosen = _chosen(message, fields, max_count)
     flat = _positions(message, fields, chosen)
     values = _columns(message, [_number(message, name)], np.float64, chosen)[:, 0]
     is_place = places(flat)
@@ -115,13 +115,13 @@ def _positions(message: Any, fields: list[Field], chosen: Chosen | None) -> Poin
     return flat
 
 
-def _chosen(message: Any, fields: list[Field], most: int | None) -> Chosen | None:
-    """Return which points to look at; None: all. Those without return have no x that is finite."""
-    if most is None or message.width * message.height <= most:
+def _chosen(message: Any, fields: list[Field], max_count: int | None) -> Chosen | None:
+    """Return the points to decode, None for all; points without return have no finite x."""
+    if max_count is None or message.width * message.height <= max_count:
         return None
     (x,) = _views(message, fields[:1])
     with_return = np.flatnonzero(np.isfinite(x))
-    return with_return[spread_indices(len(with_return), most)]
+    return with_return[spread_indices(len(with_return), max_count)]
 
 
 def _has_points(message: Any) -> bool:

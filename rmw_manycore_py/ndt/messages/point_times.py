@@ -9,8 +9,8 @@
 | `t` | Ouster | ns |
 | `offset_time` | Livox | ns |
 
-Drivers disagree on units, so the unit is one in which the points are those of one scan: the usual
-one of the datatype if that fits, else another.
+Drivers disagree on units. The unit is one in which the times span one scan: if possible, the usual
+one of the datatype.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ DECIMAL = (7, 8)  # floating-point datatypes of PointField
 # Seconds per unit, the usual one of the datatype first.
 DECIMAL_UNITS = (1.0, 1e-9, 1e-6, 1e-3)
 WHOLE_UNITS = (1e-9, 1e-6, 1e-3, 1.0)
-LONGEST_SCAN_S = 2.0  # and the longest time between its stamp and a point
+MAX_SCAN_S = 2.0  # also the maximum time between its stamp and a point
 # Of a scan whose times are in an unusual unit.
-SHORTEST_ODD_SCAN_S, LONGEST_ODD_SCAN_S = 0.01, 1.0
-FASTEST_HZ = 2e7  # points; more than those of any LiDAR
+MIN_ODD_SCAN_S, MAX_ODD_SCAN_S = 0.01, 1.0
+MAX_POINTS_HZ = 2e7  # above the point rate of any LiDAR
 
 
 class TimesError(ValueError):
-    """Times that cannot be those of the points of one scan."""
+    """Times of points that do not fit one scan."""
 
 
 def time_field(message: Any) -> str | None:
@@ -45,15 +45,15 @@ def time_field(message: Any) -> str | None:
 
 
 def decode_timed(
-    message: Any, field: str, most: int | None = None
+    message: Any, field: str, max_count: int | None = None
 ) -> tuple[Points, Matrix | TimesError]:
     """Return the positions (N, 3) of a cloud, and their times (N) in seconds after its stamp.
 
-    :param most: choose at most so many points of a larger cloud, as decode() does.
-    :returns: an error in place of times that are not those of a scan: the points can be used.
+    :param max_count: sample a larger cloud, as decode() does.
+    :returns: an error in place of times that do not fit one scan; the points are usable.
     :raises CloudError: for an invalid cloud.
     """
-    points, times = decode_with(message, field, most)
+    points, times = decode_with(message, field, max_count)
     is_decimal = any(f.name == field and f.datatype in DECIMAL for f in message.fields)
     units = DECIMAL_UNITS if is_decimal else WHOLE_UNITS
     try:
@@ -66,7 +66,7 @@ def decode_timed(
 def _after_stamp(times: Matrix, stamp_s: float, units: tuple[float, ...], count: int) -> Matrix:
     """Return times (N) in seconds after a stamp; raise TimesError if no unit fits.
 
-    :param count: how many points were recorded in this time.
+    :param count: points of the whole cloud.
     """
     if not len(times):
         return times
@@ -78,11 +78,11 @@ def _after_stamp(times: Matrix, stamp_s: float, units: tuple[float, ...], count:
     span = float(after_start.max())
     fitting = [unit_s for unit_s in units if _is_scan(span * unit_s, count, unit_s == units[0])]
     # A few points, as of a narrow view, may have taken less time than any scan.
-    fitting += [units[0]] if span * units[0] <= LONGEST_SCAN_S else []
+    fitting += [units[0]] if span * units[0] <= MAX_SCAN_S else []
     for unit_s in fitting:
         for origin_s in (0.0, stamp_s):
             shift_s = start * unit_s - origin_s
-            if abs(shift_s) <= LONGEST_SCAN_S:
+            if abs(shift_s) <= MAX_SCAN_S:
                 after_stamp: Matrix = after_start * unit_s + shift_s
                 return after_stamp
     if fitting:
@@ -92,5 +92,5 @@ def _after_stamp(times: Matrix, stamp_s: float, units: tuple[float, ...], count:
 
 def _is_scan(span_s: float, count: int, is_usual: bool) -> bool:
     if is_usual:
-        return span_s <= LONGEST_SCAN_S and count <= 1 + FASTEST_HZ * span_s
-    return SHORTEST_ODD_SCAN_S <= span_s <= LONGEST_ODD_SCAN_S
+        return span_s <= MAX_SCAN_S and count <= 1 + MAX_POINTS_HZ * span_s
+    return MIN_ODD_SCAN_S <= span_s <= MAX_ODD_SCAN_S

@@ -135,8 +135,7 @@ def _recording_of(
     field = fields.pop() if len(fields) == 1 else None
     point_times = None if field is None else BagTimes(scans, field)
     remarks = [cut, note, "" if point_times is None else point_times.problem()]
-    said = "; ".join(remark for remark in remarks if remark)
-    return recorded(path, scans, len(times), np.array(stamps), line, said, point_times)
+    return recorded(path, scans, len(times), np.array(stamps), line, remarks, point_times)
 
 
 @contextmanager
@@ -151,7 +150,7 @@ def _bad_bag(what: str) -> Iterator[None]:
 
 
 def _opened(path: Path) -> tuple[Any, str]:
-    """Return a reader, and a remark if the end of the bag is missing."""
+    """Return a reader, and a remark if a part of the bag is missing."""
     try:
         from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
@@ -168,10 +167,10 @@ def _opened(path: Path) -> tuple[Any, str]:
         reader.open()
     except Exception as error:  # rosbags does not document its errors
         with _bad_bag(f"{path}: no bag"):
-            left = open_cut_bag(files)
-            if left is None:
+            cut_bag = open_cut_bag(files)
+            if cut_bag is None:
                 raise
-        return left, f"its end is missing ({what_is_wrong(error)}): read up to there"
+        return cut_bag, f"its end is missing ({what_is_wrong(error)}): read up to there"
     return reader, "" if is_complete else f"it has no {METADATA}: its files are read"
 
 

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Bags whose end is missing, as after a power failure: what is before it is read.
+"""Reads bags whose end is missing, as after a power failure, up to there.
 
 Without its end an MCAP file has no summary, a ROS 1 bag no index, and a SQLite file fewer pages
-than its header says; none of them has a metadata.yaml. `rosbags` refuses all of these.
+than its header counts; a folder has no metadata.yaml. `rosbags` refuses all of these.
 """
 
 from __future__ import annotations

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -46,20 +47,20 @@ def recorded(
     count: int,
     stamps_s: Matrix,
     poses: PoseLine,
-    note: str = "",
+    remarks: Sequence[str] = (),
     point_times: PointTimes | None = None,
 ) -> Recording:
     """Return a recording of `count` scans, with poses interpolated at their stamps or one per scan.
 
-    Scans whose stamps do not increase, or which are outside the poses or in a gap between them, are
-    left out; the recording's note names or counts them.
+    Leaves out scans whose stamps do not increase, and those outside the poses or in a gap between
+    them; the recording's note names or counts them.
 
-    :raises ManycoreError: if there are neither stamps on both sides nor equally many.
+    :raises ManycoreError: if scans or poses have no stamps, and their numbers differ.
     """
     if len(stamps_s) not in (0, count):
         raise ManycoreError(f"{path}: {count} scans, but {len(stamps_s)} times", EXIT_BAD_INPUT)
-    is_one_each = len(poses.poses) == count and not (len(stamps_s) and len(poses.stamps))
-    if not is_one_each and not (len(stamps_s) and len(poses.stamps)):
+    have_stamps = bool(len(stamps_s) and len(poses.stamps))
+    if not have_stamps and len(poses.poses) != count:
         raise ManycoreError(
             f"{path}: {count} scans, but {len(poses.poses)} poses: expected one for each, or times "
             "of both (scans: times.txt or names; poses: TUM)",
@@ -67,10 +68,8 @@ def recorded(
         )
     stamps = stamps_s if len(stamps_s) else poses.stamps
     known = in_order(stamps) if len(stamps) else np.arange(count)
-    remarks = [note, why_left_out("scans", stamps, known)] if len(stamps) else [note]
-    if is_one_each:
-        T = poses.poses[known]
-    else:
+    remarks = [*remarks, why_left_out("scans", stamps, known)]
+    if have_stamps:
         ordered = in_order(poses.stamps)
         remarks.append(why_left_out("poses", poses.stamps, ordered))
         between, T = poses.chosen(ordered).at(stamps[known])
@@ -79,18 +78,16 @@ def recorded(
         lost = len(known) - len(between)
         remarks.append(f"{lost} of {count} scans have no pose" if lost else "")
         known = known[between]
+    else:
+        T = poses.poses[known]
     times = None if point_times is None else SomeTimes(point_times, known)
     stamps = stamps[known] if len(stamps) else stamps
-    return Recording(SomeScans(scans, known), T, stamps, _note(path, *remarks), times)
+    note = "; ".join(remark for remark in remarks if remark)
+    note = f"{path}: {note}" if note else str(path)
+    return Recording(SomeScans(scans, known), T, stamps, note, times)
 
 
 def _no_pose(path: Path, scans_s: Matrix, poses_s: Matrix) -> str:
     found = f"scans from {scans_s[0]:.3f} to {scans_s[-1]:.3f} s, poses from "
     found += f"{poses_s[0]:.3f} to {poses_s[-1]:.3f} s" if len(poses_s) else "none"
     return f"{path}: no scan has a pose near its time: {found}"
-
-
-def _note(path: Path, *remarks: str) -> str:
-    """Return the path with remarks."""
-    said = "; ".join(remark for remark in remarks if remark)
-    return f"{path}: {said}" if said else str(path)

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Rows of a SQLite file whose end is missing, page by page.
 
-SQLite itself finds rows through pages that come late in a file, and so reads nothing of a file that
-was cut. The format: https://www.sqlite.org/fileformat.html.
+SQLite finds rows through pages near the end of the file, so it reads nothing of a cut one. The
+format: https://www.sqlite.org/fileformat.html.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class SqlitePages:
     """The pages of a file, which is mapped."""
 
     def __init__(self, file: IO[bytes]) -> None:
-        """Map a file; raise ValueError if it is no SQLite file."""
+        """Map a file; raise ValueError if it is not a SQLite file."""
         self._content = mmap(file.fileno(), 0, access=ACCESS_READ)  # an empty one: ValueError
         header = self._content[:_FIRST_HEADER]
         if len(header) < _FIRST_HEADER or not header.startswith(_BEGIN):
@@ -44,7 +44,7 @@ class SqlitePages:
             raise ValueError("a damaged SQLite file")
 
     def rows(self, columns: int) -> Iterator[Row]:
-        """Yield the complete rows with so many columns, of any table."""
+        """Yield the complete rows of all tables with this number of columns."""
         for start in range(0, len(self._content) - self._size + 1, self._size):
             page = self._content[start : start + self._size]
             head = _FIRST_HEADER if start == 0 else 0
@@ -71,19 +71,18 @@ class SqlitePages:
         self._content.close()
 
     def _cell(self, page: bytes, at: int) -> tuple[int, bytes]:
-        """Return row id and payload of a cell; the payload may go on in other pages."""
+        """Return row id and payload of a cell; the payload may continue in other pages."""
         size, at = _varint(page, at)
         row, at = _varint(page, at)
         local = self._local(size)
-        payload = page[at : at + local]
-        parts = [payload]
+        parts = [page[at : at + local]]
         left = size - local
         following = int.from_bytes(page[at + local : at + local + 4], "big") if left else 0
         while left > 0:
             start = (following - 1) * self._size
             more = self._content[start : start + self._usable] if following > 0 else b""
             if len(more) < self._usable:
-                raise ValueError("the row goes on behind the end")
+                raise ValueError("the row continues after the end")
             parts.append(more[4 : 4 + left])
             left -= self._usable - 4
             following = int.from_bytes(more[:4], "big")
@@ -93,13 +92,13 @@ class SqlitePages:
         """Return how many bytes of a payload are in its cell."""
         if size <= self._usable - 35:
             return size
-        least = (self._usable - 12) * 32 // 255 - 23
-        local = least + (size - least) % (self._usable - 4)
-        return local if local <= self._usable - 35 else least
+        minimum = (self._usable - 12) * 32 // 255 - 23
+        local = minimum + (size - minimum) % (self._usable - 4)
+        return local if local <= self._usable - 35 else minimum
 
 
 def _varint(data: bytes, at: int) -> tuple[int, int]:
-    """Return a number and the place behind it."""
+    """Return a number and the offset after it."""
     value = 0
     for index in range(8):
         byte = data[at + index]

@@ -17,8 +17,8 @@ from rmw_manycore_py.ndt.geometry.arrays import Matrix
 # seconds.
 EPOCHS = ((1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3), (1e8, 1.0))
 PERIODS = ((1e7, 1e-9), (1e4, 1e-6), (10.0, 1e-3), (0.0, 1.0))
-MOST_NAMED = 3
-FEWEST_DIGITS = 10  # minimum digits of a file name that is a time since 1970
+MAX_NAMED = 3
+MIN_DIGITS = 10  # of a file name that is a time since 1970
 
 
 def in_seconds(stamps: npt.NDArray[Any]) -> Matrix:
@@ -37,7 +37,7 @@ def in_seconds(stamps: npt.NDArray[Any]) -> Matrix:
         raise ValueError("a stamp is not a finite number")
     if stamps.dtype.kind in "iu":
         stamps = stamps.astype(np.int64)  # differences of unsigned integers cannot be negative
-    # Lowest and median, as single stamps may be wrong.
+    # The lowest and the median tolerate single wrong stamps.
     period = float(np.median(np.diff(stamps))) if len(stamps) > 1 else 0.0
     unit_s = _unit_s(float(stamps.min()), max(period, 0.0))
     # Subtract the first before converting, so that nanoseconds since 1970 keep their last digits.
@@ -46,8 +46,8 @@ def in_seconds(stamps: npt.NDArray[Any]) -> Matrix:
 
 
 def in_order(stamps: Matrix) -> npt.NDArray[np.int64]:
-    """Return the indices of the most stamps that increase: without those set back or far ahead."""
-    lasts: list[int] = []  # of the sequences of each length, the one with the lowest end
+    """Return the indices of the longest sequence of increasing stamps."""
+    lasts: list[int] = []  # for each length, the last index of the sequence with the lowest end
     before = np.full(len(stamps), -1)
     for index, stamp in enumerate(stamps):
         at = bisect_left(lasts, stamp, key=stamps.__getitem__)
@@ -62,20 +62,20 @@ def in_order(stamps: Matrix) -> npt.NDArray[np.int64]:
 
 
 def why_left_out(what: str, stamps: Matrix, kept: npt.NDArray[np.int64]) -> str:
-    """Return a remark that names what is not kept; "" if all is."""
+    """Return a remark that names the stamps not kept; "" if all are."""
     lost = np.setdiff1d(np.arange(len(stamps)), kept)
     if not len(lost):
         return ""
-    named = ", ".join(f"{index} ({stamps[index]:.3f} s)" for index in lost[:MOST_NAMED])
-    more = f" and {len(lost) - MOST_NAMED} more" if len(lost) > MOST_NAMED else ""
+    named = ", ".join(f"{index} ({stamps[index]:.3f} s)" for index in lost[:MAX_NAMED])
+    more = f" and {len(lost) - MAX_NAMED} more" if len(lost) > MAX_NAMED else ""
     return f"left out as their times do not increase: {what} {named}{more}"
 
 
 def _unit_s(lowest: float, period: float) -> float:
-    for least, unit_s in EPOCHS:
-        if lowest >= least:
+    for min_time, unit_s in EPOCHS:
+        if lowest >= min_time:
             return unit_s
-    return next(unit_s for least, unit_s in PERIODS if period >= least)
+    return next(unit_s for min_period, unit_s in PERIODS if period >= min_period)
 
 
 def of_names(paths: list[Path]) -> Matrix:
@@ -85,7 +85,7 @@ def of_names(paths: list[Path]) -> Matrix:
         numbers = np.array([float(name.replace("_", ".", 1)) for name in names])
     except ValueError:
         return np.zeros(0)
-    is_time = all(len(name.split(".")[0].split("_")[0]) >= FEWEST_DIGITS for name in names)
+    is_time = all(len(name.split(".")[0].split("_")[0]) >= MIN_DIGITS for name in names)
     return in_seconds(numbers) if is_time and (numbers >= EPOCHS[-1][0]).all() else np.zeros(0)
 
 

@@ -42,7 +42,7 @@ def _tum_line(stamp_s: float, T: Matrix) -> str:
 
 
 def _line(numbers: Iterable[float]) -> str:
-    # In UTM coordinates, of thousands of kilometres, to the micrometre.
+    # Keeps micrometres in UTM coordinates, which reach thousands of kilometres.
     return " ".join(f"{number:.13g}" for number in numbers)
 
 

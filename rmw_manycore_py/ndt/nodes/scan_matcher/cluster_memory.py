@@ -26,7 +26,7 @@ class ClusterMemory:
         self._charge.hold(self._matcher.shared_bytes(next_map=next_map))
 
     def make_room_for_scan(self, points: int) -> None:
-        """Charge a scan of so many points."""
+        """Charge a scan of `points` points."""
         self._charge.hold(self._matcher.shared_bytes(points))
 
     def give_back(self) -> None:

@@ -25,7 +25,7 @@ class SmemCharge:
         self._held_bytes = 0
 
     def hold(self, size_bytes: int) -> None:
-        """Charge so many bytes from now on.
+        """Set the charge to `size_bytes`.
 
         :raises ManycoreError: if the cluster has no room; the charge is then unchanged.
         """

@@ -28,7 +28,7 @@ class Taking:
         return builder.take()
 
 
-def test_maps_are_built_one_after_the_other_and_problems_are_told():
+def test_maps_are_built_one_after_the_other_and_problems_are_reported():
     points = np.random.default_rng(1).uniform(0, 20, (20000, 3)).astype("f4")
     take = Taking()
     builder = MapBuilder(MatcherOptions(), take.built.release)

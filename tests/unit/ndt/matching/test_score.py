@@ -156,7 +156,7 @@ def test_scores_of_points_are_the_likelihood_of_the_nearest_voxels(search):
     assert seen.mean() == pytest.approx(score.nearest_voxel_likelihood, rel=1e-5)
 
 
-def test_an_alignment_tells_its_way_and_where_the_score_began():
+def test_an_alignment_has_its_path_and_initial_score():
     options = replace(MatcherOptions(), coarse_levels=())
     matcher = SerialMatcher(options)
     matcher.set_map(VoxelMap.from_points(WORLD, options))

@@ -85,13 +85,13 @@ def test_of_a_large_cloud_as_many_points_with_a_return_are_chosen(height, paddin
     records["x"][::2] = np.nan
     records["y"][101] = np.inf
     message = cloud_of(records, height, padding)
-    points, times = decode_with(message, "time", most=1000)
+    points, times = decode_with(message, "time", max_count=1000)
     np.testing.assert_array_equal(points[:, 0], times)
     assert len(points) in (999, 1000)
     assert np.all(np.diff(times) > 0)
     assert np.diff(times).max() < 4 * 20
-    np.testing.assert_array_equal(decode(message, most=1000), points)
-    assert len(decode(message, most=20_000)) == len(decode(message)) == 9_999
+    np.testing.assert_array_equal(decode(message, max_count=1000), points)
+    assert len(decode(message, max_count=20_000)) == len(decode(message)) == 9_999
 
 
 def test_all_nan_and_empty():

@@ -43,7 +43,7 @@ LAYOUTS = {
 
 
 def records_of(points: np.ndarray, layout: str = "plain", height: int = 1) -> np.ndarray:
-    """Return a cloud of so many rows, each with an invalid point at its end."""
+    """Return a cloud of `height` rows, each with an invalid point at its end."""
     records = np.zeros((height, len(points) // height + 1), LAYOUTS[layout])
     for axis, name in enumerate("xyz"):
         records[name][:, :-1] = points[:, axis].reshape(height, -1)
@@ -263,7 +263,7 @@ def test_a_bag_without_its_metadata_is_read(tmp_path, kind):
 
 
 @pytest.mark.parametrize("wrong_s", [0.4, 0.1, 1e6])
-def test_a_scan_or_pose_with_a_wrong_stamp_costs_itself(tmp_path, wrong_s):
+def test_a_scan_or_pose_with_a_wrong_stamp_is_left_out(tmp_path, wrong_s):
     with Bag(tmp_path / "bag") as bag:
         for i, (scan, T) in enumerate(zip(SCANS, POSES, strict=True)):
             at_s = wrong_s if i == 5 else 0.1 * i
@@ -277,7 +277,7 @@ def test_a_scan_or_pose_with_a_wrong_stamp_costs_itself(tmp_path, wrong_s):
     np.testing.assert_array_equal(drive.scan(5), SCANS[6])
 
 
-def test_scans_received_at_once_are_told_apart(tmp_path):
+def test_scans_received_at_once_are_distinguished(tmp_path):
     with Bag(tmp_path / "bag") as bag:
         for i, (scan, T) in enumerate(zip(SCANS, POSES, strict=True)):
             bag.write("/points", bag.cloud(0.1 * i, records_of(scan)), 0.2 * (i // 2))

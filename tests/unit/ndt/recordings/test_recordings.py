@@ -102,12 +102,12 @@ def test_stamps_of_any_type(kind):
 @pytest.mark.parametrize("seed", range(30))
 def test_as_many_stamps_as_can_be_kept_increase(seed):
     stamps = np.random.default_rng(seed).integers(0, 12, 12).astype(float)
-    most = [1] * len(stamps)
+    lengths = [1] * len(stamps)  # of the longest sequence that ends at each stamp
     for late, early in ((b, a) for b in range(len(stamps)) for a in range(b)):
         if stamps[early] < stamps[late]:
-            most[late] = max(most[late], most[early] + 1)
+            lengths[late] = max(lengths[late], lengths[early] + 1)
     kept = in_order(stamps)
-    assert len(kept) == max(most)
+    assert len(kept) == max(lengths)
     assert (np.diff(kept) > 0).all()
     assert (np.diff(stamps[kept]) > 0).all()
 

@@ -65,7 +65,7 @@ def test_scans_of_different_places_do_not_tell_it():
         assert distance_m(told, from_xyz_rpy((0.8, 0.0, 0.0), (0.0, 0.0, 0.0))) < 0.1
 
 
-def test_what_scans_do_not_tell_is_taken_from_the_reference_and_said():
+def test_the_reference_fills_in_for_the_scans_and_is_reported():
     drive = recorded(poses_along(np.arange(4) * 0.8))
     drive.scans[2] = np.zeros((0, 3), np.float32)
     guesses = GuessKind("odometry", "scans", 0.05, 0.5, 3.0, SEED)

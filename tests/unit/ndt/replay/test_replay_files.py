@@ -105,7 +105,7 @@ def test_pictures_are_drawn_with_gaps_and_without_answers(tally, tmp_path):
     write(tally, plot=tmp_path / "none.svg", picture=tmp_path / "none3.svg")
 
 
-def test_progress_is_told_in_lines_where_there_is_no_terminal(monkeypatch, capsys):
+def test_progress_is_in_lines_where_there_is_no_terminal(monkeypatch, capsys):
     monkeypatch.setattr(progress, "LINE_PERIOD_S", 0.0)
     assert list(progress.tracked(iter("abc"), "letters", 3)) == ["a", "b", "c"]
     assert capsys.readouterr().err.splitlines() == [f"letters {n} of 3" for n in (1, 2, 3)]
@@ -114,6 +114,6 @@ def test_progress_is_told_in_lines_where_there_is_no_terminal(monkeypatch, capsy
     assert capsys.readouterr().err == "scan 4 of 9: 2 lost\n"
 
 
-def test_nothing_is_said_of_what_takes_no_time(capsys):
+def test_no_progress_of_short_work(capsys):
     assert len(list(progress.tracked(range(100), "letters", 100))) == 100
     assert capsys.readouterr().err == ""

@@ -125,7 +125,7 @@ def test_files_that_cannot_be_written(tmp_path, monkeypatch, arguments, status, 
     assert "Traceback" not in result.output
 
 
-def test_the_command_says_what_is_wrong(tmp_path):
+def test_the_command_reports_problems(tmp_path):
     (tmp_path / "drive.npz").write_bytes(b"rubbish")
     arguments = ["ndt", "map", str(tmp_path / "drive.npz"), "-o", str(tmp_path / "map.npz")]
     result = CliRunner().invoke(cli, arguments)

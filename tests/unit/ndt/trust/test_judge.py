@@ -110,7 +110,7 @@ def test_a_new_map_scales_what_was_learned():
     assert judge.level.level == pytest.approx(0.5 * 0.9 * OWN_SCORE)
 
 
-def test_a_street_that_repeats_is_told_by_the_motion():
+def test_the_motion_tells_repeating_streets_apart():
     judge, stamp_s, x = driven()
     period = at(x + 12.0)
     assert "implausible" in judge.judge(stamp_s, aligned(period), period).why
@@ -153,7 +153,7 @@ def test_begun_elsewhere_the_judge_knows_no_scores():
     assert not judge.judge(stamp_s + 0.1, aligned(at(x + 1.5)), at(x + 1.5)).is_believed
 
 
-def test_the_covariance_says_what_is_not_known():
+def test_the_covariance_is_wide_where_the_pose_is_unknown():
     sure = np.diag([0.02] * 6)
     unsure = Verdict("", False, 0.0, None).covariance(sure)
     assert np.diag(unsure)[:3].min() >= 1.0

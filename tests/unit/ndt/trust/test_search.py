@@ -104,7 +104,7 @@ def test_where_the_street_repeats_no_place_stands_out(recovery):
     assert judge.motion.last is None
 
 
-def test_a_search_that_is_killed_is_told_and_done_again(world, recovery):
+def test_a_killed_search_is_reported_and_repeated(world, recovery):
     points, voxel_map = world
     scan, judge = scan_at(points, TRUTH), judge_of(voxel_map)
     assert searched(recovery, judge, scan, TRUTH)

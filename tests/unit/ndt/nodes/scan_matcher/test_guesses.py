@@ -155,7 +155,7 @@ def test_a_first_guess_holds_only_for_a_moment():
         driven(1.0).at(1.05)
 
 
-def test_what_jumped_tells_no_motion():
+def test_a_jump_gives_no_motion():
     guesses = driven(0.9)
     guesses.push(1.0, at(80.0))
     with pytest.raises(NoPoseError, match="m from the one before it"):

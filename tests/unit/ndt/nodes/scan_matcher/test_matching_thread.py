@@ -209,7 +209,7 @@ def test_what_raises_after_the_end_of_the_context_is_no_failure(node):
     assert not node.failed.is_set()
 
 
-def test_what_ends_the_thread_is_told_and_raised(node):
+def test_an_error_of_the_thread_is_reported_and_raised(node):
     node.put("broken", 1.0)
     node.may_match.release()
     assert node.failed.wait(TIMEOUT_S)
