@@ -15,7 +15,7 @@ from rmw_manycore_py import transport
 
 
 def main(count: int) -> None:
-    """Publish so many clouds of 1,000 points, the last of them empty."""
+    """Publish `count` clouds of 1,000 points, the last of them empty."""
     generator = np.random.default_rng(1)
     with transport.join() as member:
         publisher = member.publisher("/points", np.float32, qos=transport.Qos(depth=count))

@@ -34,8 +34,8 @@ class SegmentWriter(End):
         The segment is the other side's from then on: it outlives this end and this process.
 
         :param data: bytes, a numpy array or another buffer; it may be empty.
-        :return: False if the other side has left so many segments that the link is full: this one
-            is dropped, and counted.
+        :return: False if segments that the other side has not taken fill the link: this one is
+            dropped, and counted.
         :raises PeerGoneError: if the other process has ended, or closed its end.
         :raises TransportError: if there is no memory for the segment.
         """

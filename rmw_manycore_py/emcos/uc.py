@@ -43,7 +43,7 @@ class Uc:
             self._pin(host_cpu)
 
     def request(self, size_bytes: int) -> bool:
-        """Have so many bytes moved; False while the last request is pending.
+        """Request a move of `size_bytes`; False while the last request is pending.
 
         :raises PeerGoneError: if the other process has ended, or closed its end.
         """

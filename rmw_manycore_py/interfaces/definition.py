@@ -105,9 +105,9 @@ def _fields(
 ) -> Iterator[tuple[Any, int]]:
     """Yield the fields of one part of a definition with their lines, counted from 1."""
     message = _parsed(file, package, name, lines, start)
-    second = [line.partition("#")[0].split()[1:2] for line in lines]
+    names = [line.partition("#")[0].split()[1:2] for line in lines]
     for field in message.fields:
-        line = start + 1 + second.index([field.name])
+        line = start + 1 + names.index([field.name])
         check_field_name(file, line, field.name)
         yield field, line
     for element in (message, *message.fields, *message.constants):
@@ -119,7 +119,7 @@ def _fields(
 
 
 def _texts(element: Any) -> Iterator[str]:
-    """Yield what rosidl writes as a string literal into the .idl file, as it is."""
+    """Yield the texts that rosidl copies into the .idl file as string literals."""
     yield from element.annotations.get("comment", ())
     yield element.annotations.get("unit", "")
     for name in ("value", "default_value"):

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Names of fields that the generated code cannot have."""
+"""Field names that are not possible in the generated code."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Reads a definition in IDL with rosidl's parser, and finds the line of what it refuses."""
+"""Reads a definition in IDL with rosidl's parser; finds the lines of its errors."""
 
 from __future__ import annotations
 
@@ -146,7 +146,7 @@ def _tokens(node: Any) -> list[Any]:
 
 
 def _line(node: Any) -> int:
-    """Return the first line of a part of the file; 0 if only keywords are in it."""
+    """Return the first line of a part of the file; 0 if it has only keywords."""
     return min((int(token.line) for token in _tokens(node)), default=0)
 
 

@@ -46,7 +46,7 @@ def read_scalar(text: str) -> Any:
     with overrides() as read:
         try:
             read.add_value(ALL_NODES, "scalar", text)
-        except RclError:  # more than a scalar if it stands alone
+        except RclError:  # not a scalar on its own, e.g. `---`
             return text
         value = read.sections()[0][1]["scalar"]
     return text if value is None or isinstance(value, str) else value
@@ -120,7 +120,7 @@ def _problem(path: Path, content: bytes, error: str) -> Problem:
 
 
 def _syntax_error(content: bytes) -> tuple[int, str] | None:
-    """Return line and text of an error in YAML's syntax, of which rcl tells no more."""
+    """Return line and text of a syntax error, since rcl's error has neither."""
     try:
         for _ in yaml.parse(content, yaml.SafeLoader):
             pass
@@ -136,7 +136,7 @@ def _syntax_error(content: bytes) -> tuple[int, str] | None:
 
 
 def _line_of(content: bytes, error: str) -> int:
-    """Return the line that rcl refuses with an error that tells none.
+    """Return the line that rcl refuses with an error that does not name it.
 
     It is the last line of the shortest beginning of the file that rcl refuses in the same way.
     """

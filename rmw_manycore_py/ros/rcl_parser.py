@@ -18,7 +18,7 @@ _C_PLACE = re.compile(r"\s*, at \S+:\d+$")
 
 
 class RclError(Exception):
-    """The text of an error of rcl, without the place in its sources."""
+    """Error of rcl: its text without the place in rcl's sources."""
 
 
 class _Allocator(ctypes.Structure):
@@ -119,7 +119,7 @@ def _libraries() -> tuple[Any, Any]:
 
 
 class Overrides:
-    """What the files and values of one command line come to; the order of the calls counts."""
+    """Parameters from the files and values of one command line, in the order of the calls."""
 
     def __init__(self, handle: Any) -> None:
         self._handle = handle

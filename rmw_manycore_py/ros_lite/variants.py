@@ -80,8 +80,9 @@ def with_transfer(
 
 
 def with_split(mapfile: Variant, derivatives: int, searches: int) -> Variant:
-    """Return the mapfile with so many clusters of derivatives, and of radius search.
+    """Return the mapfile with other numbers of clusters.
 
+    :param derivatives: clusters of derivatives.
     :param searches: clusters of radius search, the last of which merges.
     """
     variant = deepcopy(mapfile)

@@ -46,7 +46,7 @@ class Fifo:
             self._arriving = None
 
     def begin_departure(self, now: float, packet: Packet, duration: float) -> None:
-        """Send the packet in front, flit after flit, for so many cycles."""
+        """Send the packet in front, flit after flit, for `duration` cycles."""
         self._update(now)
         self._leaving_rate = packet.flits / duration
 

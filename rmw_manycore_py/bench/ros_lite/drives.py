@@ -46,7 +46,7 @@ def drive(
     drives: bool = True,
     meanwhile: Callable[[str], T],
 ) -> tuple[DriveFigures, T]:
-    """Return the figures of so many scans, and what `meanwhile` returns.
+    """Return the figures of `scans` scans, and the result of `meanwhile`.
 
     :param meanwhile: called with the platform once there are figures; the vehicle drives on.
     :raises ManycoreError: if the run ends early, or takes far too long.

@@ -143,7 +143,7 @@ def _call(run: Run, middleware: Middleware, served: Served, clients: int) -> lis
 
 
 def _call_in_turns(run: Run, middleware: Middleware, served: Served, clients: int) -> list[Result]:
-    """Call a server of so many clients, and one of a single client, in turns."""
+    """Call a server of `clients` clients, and one of a single client, in turns."""
     calls = run.iterations(served.calls // TURNS)
     with (
         _attended(run, middleware, served, clients) as of_all,

@@ -62,5 +62,5 @@ def _curve(operation: str) -> str:
     return f"{INSIDE.name}, {(OPERATIONS | REPAIR | CONTROL)[operation]}"
 
 
-GOALS: tuple[Goal, ...] = ()  # what counts is what others feel, not how long a hold is
+GOALS: tuple[Goal, ...] = ()  # the delay of other processes counts, not the length of a hold
 PLACEMENT = "holds: all endpoints on the first, what watches the lock on the second"

@@ -90,7 +90,7 @@ def joined(parts: Iterable[Pairs]) -> Pairs:
 
 
 def split(found: Pairs, parts: int) -> list[Pairs]:
-    """Return the pairs in so many parts of whole points, each about as many pairs."""
+    """Return the pairs in `parts` parts of whole points and of about the same number of pairs."""
     counts, pairs = found
     ends = np.cumsum(counts, dtype=np.int64)
     wanted = len(pairs) * np.arange(1, parts) / parts

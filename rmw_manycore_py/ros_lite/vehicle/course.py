@@ -30,7 +30,7 @@ _SEED = 11
 
 @dataclass(frozen=True)
 class Course:
-    """A swinging lane of some length, in so many waypoints."""
+    """A swinging lane of a length and a number of waypoints."""
 
     length_m: float
     waypoints: int

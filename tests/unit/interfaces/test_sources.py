@@ -44,7 +44,7 @@ def test_an_idl_file_made_of_a_definition_is_no_second_one(tmp_path: Path) -> No
     assert definition.file == directory / "msg/A.msg"
 
 
-def test_all_that_is_wrong_is_said_at_once(tmp_path: Path) -> None:
+def test_all_problems_are_reported_at_once(tmp_path: Path) -> None:
     write(tmp_path / "a_msgs", msg__A__msg="int32\n", msg__B__msg="int32 b\nfloat\n")
     write(tmp_path / "b_msgs", msg__C__msg="?\n")
     with pytest.raises(DefinitionError) as caught:

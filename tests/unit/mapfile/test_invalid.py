@@ -55,7 +55,7 @@ def test_a_wrong_launch_file_is_refused(file: Path) -> None:
     assert errors(caught.value, "invalid_launch") == expected_errors(file)
 
 
-def test_every_fixture_says_what_it_expects() -> None:
+def test_every_fixture_names_its_error() -> None:
     silent = [
         file.name
         for directory in ("invalid", "invalid_launch")

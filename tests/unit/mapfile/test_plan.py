@@ -76,7 +76,7 @@ def test_a_plan_has_all_nodes_and_comments_on_what_is_missing(plan: Path) -> Non
     ]
 
 
-def test_looking_at_a_plan_says_what_is_missing_and_running_it_refuses_that(plan: Path) -> None:
+def test_showing_a_plan_reports_what_is_missing_and_running_it_fails(plan: Path) -> None:
     checked = manycore("map", "check", str(plan))
     assert checked.exit_code == 0
     assert checked.output.splitlines()[-1] == "a plan: 5 of 6 nodes cannot run here"
@@ -140,7 +140,7 @@ def test_map_init_writes_a_plan(tmp_path: Path) -> None:
     assert "platform: coolidge\nplan: true" in made.output
 
 
-def test_a_plan_without_nodes_says_what_was_left_out(tmp_path: Path) -> None:
+def test_a_plan_without_nodes_reports_what_was_left_out(tmp_path: Path) -> None:
     launch = tmp_path / "robot.launch.xml"
     launch.write_text('<launch><include file="$(find-pkg-share nav2)/a.launch.py"/></launch>')
     with pytest.raises(ManycoreError, match=r"no nodes found in .*\n.*the package 'nav2', found"):

@@ -91,7 +91,7 @@ def test_nodes_of_a_launch_file_take_topics_from_their_sources(
     assert lines[lines.index("  talker:") + 3] == "      chatter: std_msgs/msg/String"
 
 
-def test_what_cannot_be_read_is_said(tmp_path: Path) -> None:
+def test_a_computed_topic_is_reported(tmp_path: Path) -> None:
     write_node(tmp_path / "talker.py", "talker", "publisher", topic="name")
     assert "    # talker.py:6: topic or type is computed; add it here\n" in init([tmp_path])
 

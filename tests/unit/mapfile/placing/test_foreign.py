@@ -55,7 +55,7 @@ def test_nodes_need_no_way_to_start(tmp_path: Path) -> None:
         "arguments: a",
     ],
 )
-def test_what_the_launch_file_says_is_refused(tmp_path: Path, key: str) -> None:
+def test_keys_that_the_launch_file_decides_are_refused(tmp_path: Path, key: str) -> None:
     with pytest.raises(MapfileError) as refusal:
         places(tmp_path, f"nodes:\n  one:\n    cluster: 1\n    {key}\n")
     (problem,) = refusal.value.problems
