@@ -11,14 +11,14 @@ from rmw_manycore_py.ndt.files.pcd_file import read_pcd
 from rmw_manycore_py.ndt.files.ply_file import read_ply
 from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
 from rmw_manycore_py.ndt.geometry.arrays import Points
-from rmw_manycore_py.ndt.geometry.precision import as_they_were
+from rmw_manycore_py.ndt.geometry.precision import narrowed
 
 
 def read_cloud(path: Path) -> Points:
     """Return the points (N, 3) of a PCD or PLY file, including non-finite ones."""
     read = read_pcd if suffix_of(path) == ".pcd" else read_ply
     try:
-        return as_they_were(read(path))
+        return narrowed(read(path))
     except UNREADABLE as error:
         raise map_error(path, what_is_wrong(error)) from error
 

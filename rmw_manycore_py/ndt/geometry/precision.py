@@ -26,8 +26,8 @@ def needs_doubles(points: Points) -> bool:
     return points.dtype == np.float64 and reach_m(points) >= FARTHEST_SINGLE_M
 
 
-def as_they_were(points: Points) -> Points:
-    """Return float64 points (N, 3) that a reader has widened from float32 as float32 again."""
+def narrowed(points: Points) -> Points:
+    """Return points (N, 3) as float32 if that loses nothing: some programs write only doubles."""
     with np.errstate(over="ignore"):
         singles = points.astype(np.float32)
     return singles if np.array_equal(singles, points, equal_nan=True) else points

@@ -96,6 +96,14 @@ def test_layouts(tmp_path, dtype, data):
     assert read_cloud(path).dtype == (np.float32 if dtype is PADDED else np.float64)
 
 
+def test_a_text_has_the_precision_of_its_type(tmp_path):
+    header = header_of(PLAIN, "ascii", sizes="4 4 4", points=1, width=1)
+    (tmp_path / "map.pcd").write_bytes(header + b"0.1 0.2 0.3\n")
+    found = read_cloud(tmp_path / "map.pcd")
+    assert found.dtype == np.float32
+    np.testing.assert_array_equal(found, np.float32([[0.1, 0.2, 0.3]]))
+
+
 def test_as_windows_writes_it_with_holes(tmp_path):
     """Header lines end with CR LF."""
     text = header_of(PLAIN, "ascii", points=2, width=2).decode() + "1 2 3\nnan NaN nan\n"

@@ -250,6 +250,7 @@ def test_ply_files_whole_and_cut_off(tmp_path, encoding, number):
     header = HEADER.format(f"{encoding} 1.0", *[number] * 3).encode()
     path.write_bytes(header + data)
     np.testing.assert_allclose(read_points(path), CORNERS, atol=0.3 if number == "float" else 0.0)
+    assert read_points(path).dtype == (np.float32 if number == "float" else np.float64)
     path.write_bytes(header + data[: len(data) // 2])
     with pytest.raises(ManycoreError, match=r"its 3 points need \d+ (numbers|bytes), found"):
         read_points(path)
