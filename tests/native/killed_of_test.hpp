@@ -209,7 +209,7 @@ inline uint64_t kill_after(Fixture & f, const std::string & role, uint64_t instr
   child.kill();
   if (reaps) {  // the next owner of the lock repairs what was left incomplete
     f.process->create_publisher(on_topic("/y", keep_last(1)));
-    // As the other reapers look when a receive thread has ended.
+    // The reapers look again, as after the end of a receive thread.
     f.inspection.registry().clusters().at(1).wake_reaper();
   }
   return done;

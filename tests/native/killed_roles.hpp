@@ -127,8 +127,7 @@ inline const Role reaps("reaps", [](Lines &, const Arguments & arguments) {
   finish_steps();
 });
 
-/// Messages of two publishers, the older of which 100 subscriptions keep no more when the other one
-/// leaves.
+/// Messages of two publishers: when the newer one leaves, 100 subscriptions drop the older one's.
 inline const Role sweeps_many("sweeps_many", [](Lines &, const Arguments & arguments) {
   const auto process = join(arguments.at(0));
   const EndpointSpec spec = on_topic(crowded_topic, transient_local(1));

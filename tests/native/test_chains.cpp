@@ -95,7 +95,7 @@ TEST_CASE("older endpoints are found by age, not by slot, also after a repair") 
   CHECK(f.older() == Slots{expected[0], expected[2]});
 }
 
-// Cannot prove that each moment of a repair is harmless; the walks meet many of them.
+// Not a proof for each step of a repair; the walks meet many of them.
 TEST_CASE("a walk from the bucket misses no endpoint while repairs run") {
   Fixture f;
   std::atomic<bool> is_repairing{true};

@@ -76,8 +76,8 @@ private:
   FileDescriptor file_;
 };
 
-/// A subscription whose memory makes a hole when it is freed, from its head on. Its slot is the
-/// first one, which a read comes to first.
+/// A subscription at a page boundary, so that a hole replaces its header when it is freed. It has
+/// the first slot, which graph reads visit first.
 class DeepSubscription {
 public:
   explicit DeepSubscription(const TestPlatform & platform)

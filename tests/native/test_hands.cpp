@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// SMEM in the hand of a process, so that it is backed and given back without the registry lock:
-// landings, large blocks of reader and source tables, large queues, and what endpoints leave.
+// Blocks in the hand of a process, which backs and frees them without the registry lock: landings,
+// large blocks of reader and source tables, large queues, and the blocks of closed endpoints.
 #include <doctest/doctest.h>
 
 #include <sys/mount.h>
@@ -55,7 +55,7 @@ Profile profile_of(uint64_t smem_bytes) {
   return profile;
 }
 
-/// Memory that the segment of a cluster gets while a child creates an endpoint.
+/// Memory added to the segment of a cluster while a child creates an endpoint.
 struct Backed {
   uint64_t without_lock = 0;
   uint64_t in_longest_hold = 0;  ///< in one hold of the registry lock, the largest

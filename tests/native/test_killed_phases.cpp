@@ -162,7 +162,7 @@ void kill_publisher(Transfer kind, size_t index) {
 void kill_at_point_of_service(
   Fixture & f, const std::string & role, uint32_t cluster, const Point & point) {
   CAPTURE(point.name);
-  // Else the receive thread may be stopped in the phase of the message before.
+  // Otherwise the receive thread may be stopped in the phase of the previous message.
   wait_until("the message before is dealt with", [&] { return !point.is_reached(); });
   const pid_t pid = f.platform.stop_receive_thread(cluster);
   f.publish_numbers(2, 2, three_packets);

@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// A publisher whose process has no memory for the list of its readers: what it publishes is
-// refused, or reaches all readers, and its phase ends.
+// A publisher whose process has no memory for the list of its readers: a message is refused, or
+// reaches all readers, and the publisher's phase ends.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -20,7 +20,7 @@ namespace {
 
 thread_local bool may_allocate = true;
 
-/// Refuses all memory to this thread during its lifetime.
+/// Lets allocations of this thread fail during its lifetime.
 class NoMemory {
 public:
   NoMemory() { may_allocate = false; }
@@ -60,7 +60,7 @@ struct Fixture {
 
 }  // namespace
 
-// Not inlined: g++ would take each free() for one of memory from another allocation function.
+// Not inlined: g++ would warn that free() gets memory of another allocation function.
 [[gnu::noinline]] void * operator new(size_t size) {
   void * const memory = may_allocate ? std::malloc(size) : nullptr;
   if (memory == nullptr) {

@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// What a reader keeps of a topic DSM that grows: a stopped one no more than what it was looking at.
-// Readers that keep each of its generations are named by the error.
+// Generations of a growing topic DSM that readers pin: a stopped reader pins at most what it was
+// reading. Where readers pin all of them, the error names the subscriptions.
 #include <doctest/doctest.h>
 
 #include "messages.hpp"
@@ -18,19 +18,19 @@ constexpr const char * topic = "/grows";
 constexpr uint32_t depth = 2;
 constexpr uint64_t mebibyte = 1 << 20;
 
-/// Takes what there is; some of it was published before it came.
+/// Takes messages published before and after its match.
 const Role reads("reads_generations", [](Lines &, const Arguments & arguments) {
   Placement placement;
   placement.platform = arguments.at(0);
   const auto process = Process::join(placement);
   const auto subscription = process->create_subscription(on_topic(topic, transient_local(depth)));
   begin_steps();
-  take_all(*subscription);  // throws if one is torn
+  take_all(*subscription);  // throws if a message is torn
   finish_steps();
 });
 
-/// Publishes so many messages of each of growing sizes, until one is refused: up to a size that
-/// takes twice as many generations as a topic DSM has.
+/// Publishes `of_each_size` messages of each of growing sizes, until one is refused. The sizes need
+/// twice as many generations as a topic DSM has.
 Refusal refusal_of_growth(Publisher & publisher, uint64_t & number, uint32_t of_each_size) {
   return refusal_of([&] {
     for (double size = 2100; size < 5 * mebibyte; size *= 1.6) {
@@ -44,7 +44,7 @@ Refusal refusal_of_growth(Publisher & publisher, uint64_t & number, uint32_t of_
 struct Fixture {
   explicit Fixture(const Qos & qos) : publisher(process->create_publisher(on_topic(topic, qos))) {}
 
-  /// Of the only source of the child's subscription.
+  /// Word of the only source of the child's subscription.
   const std::atomic<uint64_t> & reading() {
     Registry & registry = inspection.registry();
     const SourceEntry * found = nullptr;
@@ -63,8 +63,7 @@ struct Fixture {
   uint64_t published = 0;
 };
 
-/// Steps a reader through a take until it has stored `reading` so many times, and leaves it there.
-/// False if the take ended before.
+/// Stops a reader in a take, at its `stores`-th store to `reading`. False if the take ended before.
 bool stop_reader(SteppedChild & reader, const std::atomic<uint64_t> & reading, int stores) {
   for (uint64_t before = reading; stores != 0;) {
     if (reader.step(1) == 0) {
@@ -98,7 +97,7 @@ TEST_CASE("wherever a reader stops in a look or a claim, messages may grow") {
     const bool is_kept = reading != no_record && reading != header_only;
     kept += is_kept ? 1 : 0;
     CHECK((!is_kept || (generation.offset == offset && generation.data_bytes == bytes)));
-    while (!reader.finished()) {  // what it has claimed is still whole
+    while (!reader.finished()) {  // its claimed record is still whole
       reader.run_to_system_call();
     }
     REQUIRE(stores < 100);

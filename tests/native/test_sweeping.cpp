@@ -21,7 +21,7 @@ uint32_t slot_of(const Endpoint & endpoint) {
   return static_cast<uint32_t>(endpoint_in(endpoint.gid()));
 }
 
-/// As the endpoint's process does, but without the sweep.
+/// Closes an endpoint as its process does, but without the sweep.
 void close(Registry & registry, uint32_t slot) {
   std::vector<uint32_t> unread;
   const Registry::Lock lock(registry);

@@ -21,7 +21,7 @@ using transfer_of_test::packets_in;
 
 namespace {
 
-/// Subscribes to so many topics /s1, /s2 ..., in cluster 2: "ok", or why not.
+/// Subscribes to the topics /s1, /s2 ... in cluster 2, up to a number: "ok", or the error.
 const Role subscribes("subscribes", [](Lines & test, const Arguments & arguments) {
   Placement placement;
   placement.platform = arguments.at(0);
