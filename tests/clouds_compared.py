@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Point clouds read by us, and by PCL (its results are kept) and Open3D (where it is there)."""
+"""Point clouds read by us, by PCL (its results are kept) and by Open3D (where it is installed)."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import made_clouds
 import made_ply
 import numpy as np
 from comparing import DisagreementError, run
+from mutation import damaged
 from pcl_results import FILE, checksum
 
 from rmw_manycore_py.errors import ManycoreError
@@ -18,6 +19,7 @@ from rmw_manycore_py.ndt.files.cloud_file import load_open3d, read_cloud
 
 OPEN3D = load_open3d() if importlib.util.find_spec("open3d") else None
 RESULTS = np.load(FILE)
+PATCHES = (b"-1", b"9" * 20, b"\0", b"\n", b"nan", b" ")
 
 
 def ours(path: Path, content: bytes) -> np.ndarray | None:
@@ -26,7 +28,7 @@ def ours(path: Path, content: bytes) -> np.ndarray | None:
         return read_cloud(path)
     except ManycoreError as error:
         if not str(error).isprintable() or not str(error).startswith(f"map {path}: "):
-            raise DisagreementError(f"no good text: {error}") from error
+            raise DisagreementError(f"not one line about the map: {error}") from error
         return None
 
 
@@ -54,27 +56,10 @@ def compare_ply(directory: Path, number: int) -> str:
     return "PLY read"
 
 
-def damaged(chance: random.Random, content: bytes) -> bytes:
-    changed = bytearray(content)
-    for _ in range(chance.choice((1, 2, 5))):
-        at = chance.randrange(len(changed))
-        what = chance.randrange(4)
-        if what == 0:
-            changed[at] ^= 1 << chance.randrange(8)
-        elif what == 1:
-            changed[at : at + 1] = chance.choice((b"-1", b"9" * 20, b"\0", b"\n", b"nan", b" "))
-        elif what == 2:
-            del changed[at : at + chance.randrange(1, 20)]
-        else:
-            changed[at:at] = changed[: chance.randrange(1, 40)]
-    return bytes(changed) or b"\0"
-
-
 def compare(directory: Path, number: int) -> str:
     chance = random.Random(number)
-    makers = ((made_clouds, ".pcd"), (made_ply, ".ply"))
-    maker, suffix = chance.choice(makers)
-    ours(directory / f"damaged{suffix}", damaged(chance, maker.made(number).content))
+    maker, suffix = chance.choice(((made_clouds, ".pcd"), (made_ply, ".ply")))
+    ours(directory / f"damaged{suffix}", damaged(chance, maker.made(number).content, PATCHES))
     return f"{compare_pcd(directory, number)}, {compare_ply(directory, number)}"
 
 

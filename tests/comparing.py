@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Generated inputs, each read by us and by the real reader of its format.
 
-A comparison is a program, as readers keep state and print: python PROGRAM DIRECTORY FIRST LAST. It
-makes each input from its number alone, and prints a line for each on which the two disagree, or
-which ends in an error that users are not to see.
+A comparison is a program, because readers keep state and print: python PROGRAM DIRECTORY FIRST END.
+It derives each input from its number alone. It reports each input on which the two disagree, or
+which ends in an error that users must not see.
 """
 
 from __future__ import annotations
@@ -26,28 +26,28 @@ Compare = Callable[[Path, int], str]
 
 
 class DisagreementError(Exception):
-    """We and the real reader have read an input differently."""
+    """We and the real reader read an input differently."""
 
 
 def run(compare: Compare) -> None:
     """Compare as the command line says, where `compare` returns the name of the outcome."""
-    directory, first, last = sys.argv[1:]
-    ends: Counter[str] = Counter()
-    for number in range(int(first), int(last)):
+    directory, first, end = sys.argv[1:]
+    outcomes: Counter[str] = Counter()
+    for number in range(int(first), int(end)):
         faulthandler.dump_traceback_later(HANG_S, exit=True)
         try:
-            ends[compare(Path(directory), number)] += 1
+            outcomes[compare(Path(directory), number)] += 1
         except BaseException as error:
-            ends["wrong"] += 1
+            outcomes["wrong"] += 1
             print(f"input {number}: {type(error).__name__}: {error}", file=sys.__stderr__)
         faulthandler.cancel_dump_traceback_later()
-    print(json.dumps(ends), file=sys.__stderr__)
-    sys.exit(1 if ends["wrong"] else 0)
+    print(json.dumps(outcomes), file=sys.__stderr__)
+    sys.exit(1 if outcomes["wrong"] else 0)
 
 
-def compared(program: Path, directory: Path, count: int) -> dict[str, int]:
-    """Run a comparison of `count` inputs; return how often each outcome occurred."""
-    words = [sys.executable, str(program), str(directory), "0", str(count)]
+def compared(program: Path, directory: Path, numbers: range) -> dict[str, int]:
+    """Run a comparison of these inputs; return how often each outcome occurred."""
+    words = [sys.executable, program, directory, str(numbers.start), str(numbers.stop)]
     done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
     assert done.returncode == 0, done.stderr[-10_000:]
     counted: dict[str, int] = json.loads(done.stderr.splitlines()[-1])

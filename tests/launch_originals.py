@@ -1,15 +1,14 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Reads launch files with launch and launch_ros themselves, which start nothing here.
 
-python launch_originals.py LIST: for each line of LIST, a launch file and its arguments separated by
-tabs, prints a line of JSON: the processes that it would start, or why launch refuses it.
+For each line of standard input, a launch file and its arguments separated by tabs, prints a line of
+JSON: the processes that it would start, or why launch refuses it.
 """
 
 from __future__ import annotations
 
 import json
 import os
-import sys
 import traceback
 from itertools import pairwise
 from pathlib import Path
@@ -102,10 +101,11 @@ def read(file: str, arguments: dict[str, str]) -> dict[str, Any]:
 
 
 def main() -> None:
-    results = open(os.dup(1), "w")  # noqa: SIM115  # until the process ends
-    os.dup2(2, 1)  # launch logs to standard output
-    for line in Path(sys.argv[1]).read_text().splitlines():
-        file, *words = line.split("\t")
+    lines, results = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), "w")
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)  # commands in launch files read it
+    os.dup2(2, 1)  # launch logs to it
+    for line in lines:
+        file, *words = line.rstrip("\n").split("\t")
         result = read(file, dict(word.split(":=", 1) for word in words))
         print(json.dumps(result), file=results, flush=True)
 

@@ -1,23 +1,24 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Command lines that launch and we make from launch files of one node, as rcl reads them.
+"""What launch and we make of launch files of one node, as rcl reads its command line.
 
-python launch_values.py FIRST LAST: prints launch's outcome for `made_launch_values.made` of each
-number, one line of JSON each; null if launch refuses the file.
+FILE has what launch 3.4.3 and launch_ros 0.26.6 make of the first files of made_launch_values.py;
+null where launch refuses one. Where launch is installed, this makes it anew:
+
+    python tests/launch_values.py 500
 """
 
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-import ros2_packages
 from made_launch_values import Made, made
 
 from rmw_manycore_py.errors import MapfileError
@@ -25,20 +26,18 @@ from rmw_manycore_py.mapfile import PlacedNode, check
 from rmw_manycore_py.mapfile.launch_file import read_launch_file
 from rmw_manycore_py.ros.rcl_parser import RclError, overrides
 
-# Rules and values of the node, by name; no node if it is empty, None for a file that is refused.
-Outcome = list[list[Any]] | None
+FILE = Path(__file__).parent / "unit/mapfile/launch_file/values_of_launch.jsonl"
 _SCRIPT = Path(__file__).with_name("launch_originals.py")
 
+# Rules and values of the node, by name; no node if it is empty, None for a file that is refused.
+Outcome = list[list[Any]] | None
 
-def by_launch(files: Sequence[Path], environment: Mapping[str, str]) -> list[Outcome]:
-    """Read launch files with launch itself."""
-    listed = files[0].with_name("list")
-    listed.write_text("".join(f"{file}\n" for file in files))
-    words = [sys.executable, str(_SCRIPT), str(listed)]
-    done = subprocess.run(words, env=environment, capture_output=True, text=True, check=True)
-    results = [json.loads(line) for line in done.stdout.splitlines()]
-    assert len(results) == len(files), done.stderr
-    return [_of_launch(result) for result in results]
+
+def write(directory: Path, number: int, launch: Made) -> Path:
+    """Write a launch file."""
+    file = directory / f"made{number}{launch.suffix}"
+    file.write_text(launch.text)
+    return file
 
 
 def by_us(file: Path) -> Outcome:
@@ -63,14 +62,14 @@ def _is_without_nodes(file: Path) -> bool:
         return False
 
 
-def write(directory: Path, number: int, launch: Made) -> Path:
-    """Write a launch file."""
-    file = directory / f"made{number}{launch.suffix}"
-    file.write_text(launch.text)
-    return file
-
-
-def _of_launch(result: Mapping[str, Any]) -> Outcome:
+def by_launch(file: Path) -> Outcome:
+    """Read a launch file with launch itself."""
+    process = _launch()
+    assert process.stdin is not None
+    assert process.stdout is not None
+    process.stdin.write(f"{file}\n")
+    process.stdin.flush()
+    result = json.loads(process.stdout.readline())
     if "error" in result:
         return None
     try:
@@ -79,7 +78,15 @@ def _of_launch(result: Mapping[str, Any]) -> Outcome:
         return None
 
 
-def _as_rcl_reads(words: Sequence[str], files: Mapping[str, str] | None = None) -> list[Any]:
+@cache
+def _launch() -> subprocess.Popen[str]:
+    pipe = subprocess.PIPE
+    return subprocess.Popen(
+        [sys.executable, _SCRIPT], stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, text=True
+    )
+
+
+def _as_rcl_reads(words: Sequence[str], files: Mapping[str, str]) -> list[Any]:
     """Return the rules of a command line and its parameters, written with their types."""
     rules = [word for option, word in pairwise(words) if option == "-r"]
     with overrides() as read, tempfile.NamedTemporaryFile("w+") as written:
@@ -89,7 +96,7 @@ def _as_rcl_reads(words: Sequence[str], files: Mapping[str, str] | None = None) 
             elif option == "--params-file":
                 written.seek(0)
                 written.truncate()
-                written.write((files or {}).get(word) or Path(word).read_text())
+                written.write(files.get(word) or Path(word).read_text())
                 written.flush()
                 read.add_file(written.name)
         found = {name: value for _, values in read.sections() for name, value in values.items()}
@@ -98,12 +105,10 @@ def _as_rcl_reads(words: Sequence[str], files: Mapping[str, str] | None = None) 
 
 
 def _main() -> None:
-    first, last = map(int, sys.argv[1:])
-    with tempfile.TemporaryDirectory() as directory:
-        environment = {**os.environ, **ros2_packages.environment(Path(directory, "packages"))}
-        files = [write(Path(directory), number, made(number)) for number in range(first, last)]
-        for outcome in by_launch(files, environment):
-            print(json.dumps(outcome, ensure_ascii=False))
+    with tempfile.TemporaryDirectory() as directory, FILE.open("w", encoding="utf-8") as kept:
+        for number in range(int(sys.argv[1])):
+            outcome = by_launch(write(Path(directory), number, made(number)))
+            print(json.dumps(outcome, ensure_ascii=False), file=kept)
 
 
 if __name__ == "__main__":

@@ -68,14 +68,8 @@ _CONSTANTS = ("long X = 1", "long Y = -1", "string S = 'x'", 'string S = "s"', "
 _ODD_CONSTANTS = (
     *("long X = 1+1", "long X = 0x1f", "long X = 017", 'wstring W = L"a"', 'wstring W = "a"'),
     *("long X = TRUE", "octet O = 1", "char C = 'a'", "Color C = RED", "fixed F = 3d"),
-    *(
-        "double D = 1.5",
-        "double D = 1",
-        'string S = "s" "t"',
-        "long X = (1)",
-        "long X = ~1",
-        "long X = N",
-    ),
+    *("double D = 1.5", "double D = 1", 'string S = "s" "t"', "long X = (1)", "long X = ~1"),
+    "long X = N",
 )
 
 

@@ -1,8 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Launch files of one node whose parameters, conditions and commands need launch's typed values.
-
-`made(number)` derives a file from its number alone.
-"""
+"""Launch files of one node, made at random: parameters, conditions and commands with values."""
 
 from __future__ import annotations
 
@@ -36,18 +33,7 @@ TYPES = (
     *("list_of_str", "yaml", "number"),
 )
 SEPARATED = (
-    "1,2",
-    "1, 2",
-    "a,b",
-    "a, b",
-    "true,false",
-    "1.5,2.5",
-    "1,2.5",
-    "1,a",
-    "a",
-    "",
-    ",",
-    "1;2",
+    *("1,2", "1, 2", "a,b", "a, b", "true,false", "1.5,2.5", "1,2.5", "1,a", "a", "", ",", "1;2"),
 )
 COMMANDS = (
     *("echo out", "sh -c 'echo out; echo err >&2'", "sh -c 'echo err >&2; exit 3'", "false"),
@@ -58,17 +44,10 @@ MODES = ("fail", "ignore", "warn", "capture", "Capture", "", "true")
 
 @dataclass(frozen=True)
 class Made:
-    """A launch file: the tags of XML, the whole of YAML, the actions in Python."""
+    """A launch file."""
 
     suffix: str
-    content: str
-
-    @property
-    def text(self) -> str:
-        """The file's text."""
-        if self.suffix == ".launch.xml":
-            return f"<launch>{self.content}</launch>\n"
-        return self.content if self.suffix == ".launch.yaml" else PYTHON.format(self.content)
+    text: str
 
 
 PYTHON = """\
@@ -108,7 +87,7 @@ def made(number: int) -> Made:
 
 
 def xml(*tags: str) -> Made:
-    return Made(".launch.xml", "".join(tags))
+    return Made(".launch.xml", f"<launch>{''.join(tags)}</launch>\n")
 
 
 def tag(kind: str, content: str = "", /, **attributes: str | None) -> str:
@@ -131,7 +110,7 @@ def yaml_node(parameters: list[dict[str, object]]) -> dict[str, object]:
 
 
 def python(actions: str) -> Made:
-    return Made(".launch.py", actions)
+    return Made(".launch.py", PYTHON.format(actions))
 
 
 def python_node(parameters: str, more: str = "") -> str:
@@ -246,19 +225,8 @@ def value_in_python(chance: Chance) -> Made:
 
 
 def python_type(chance: Chance) -> str:
-    return chance.choice(
-        (
-            "None",
-            "bool",
-            "int",
-            "float",
-            "str",
-            "List[int]",
-            "List[float]",
-            "List[str]",
-            "List[bool]",
-        )
-    )
+    scalars = ("None", "bool", "int", "float", "str")
+    return chance.choice((*scalars, "List[int]", "List[float]", "List[str]", "List[bool]"))
 
 
 def python_value(chance: Chance, depth: int = 0) -> str:

@@ -7,6 +7,7 @@ import io
 import random
 import struct
 
+import mutation
 from mcap.opcode import Opcode
 from mcap.reader import FOOTER_SIZE
 from mcap.writer import MCAP0_MAGIC, CompressionType, IndexType, Writer
@@ -41,21 +42,9 @@ def made(number: int) -> bytes:
 
 
 def damaged(number: int) -> bytes:
-    """Return the file of a number, with some bytes changed, lost or doubled."""
-    chance = random.Random(-number)
-    content = bytearray(made(number))
-    for _ in range(chance.choice((1, 1, 2, 5))):
-        at = chance.randrange(len(content))
-        what = chance.randrange(4)
-        if what == 0:
-            content[at] ^= 1 << chance.randrange(8)
-        elif what == 1:
-            content[at : at + 8] = chance.choice((b"\xff" * 8, b"\0" * 8, b"\0\0\0\1" * 2))
-        elif what == 2:
-            del content[at : at + chance.randrange(1, 20)]
-        else:
-            content[at:at] = content[: chance.randrange(1, 40)]
-    return bytes(content)
+    """Return the file of a number, damaged."""
+    patches = (b"\xff" * 8, b"\0" * 8, b"\0\0\0\1" * 2)
+    return mutation.damaged(random.Random(number), made(number), patches)
 
 
 def _written(chance: random.Random) -> bytes:

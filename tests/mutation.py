@@ -1,10 +1,10 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Mutations of YAML, XML and Python files: of their data and of their bytes."""
+"""Mutations of files: of the data, lines and words of YAML, XML and Python, and of bytes."""
 
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -57,16 +57,7 @@ SNIPPETS = (
     *("&amp;", "&x;", "<x>", "</launch>", "<group>" * 300, "<!DOCTYPE l [<!ENTITY x 'y'>]>", "]]>"),
 )
 _BYTES = (
-    b"\0",
-    b"\x1b",
-    b"\xff",
-    b"\xc3",
-    b"\xef\xbb\xbf",
-    b"\r",
-    b"\r\n",
-    b"\x85",
-    b"\x7f",
-    b"\t",
+    *(b"\0", b"\x1b", b"\xff", b"\xc3", b"\xef\xbb\xbf", b"\r", b"\r\n", b"\x85", b"\x7f", b"\t"),
 )
 _PUNCTUATION = "{}[]:,&*!|>'\"%@`#-?<>$()=/\\ \n\t"
 
@@ -155,6 +146,23 @@ def mutated_bytes(chance: random.Random, content: bytes) -> bytes:
     if what == 2:
         return chance.choice(_BYTES) + content
     return content[:at] + chance.choice(_BYTES) + content[at:]
+
+
+def damaged(chance: random.Random, content: bytes, patches: Sequence[bytes]) -> bytes:
+    """Flip a bit, overwrite, remove or repeat some bytes, up to five times."""
+    changed = bytearray(content)
+    for _ in range(chance.choice((1, 1, 2, 5))):
+        at = chance.randrange(len(changed))
+        what = chance.randrange(4)
+        if what == 0:
+            changed[at] ^= 1 << chance.randrange(8)
+        elif what == 1:
+            changed[at : at + 8] = chance.choice(patches)
+        elif what == 2:
+            del changed[at : at + chance.randrange(1, 20)]
+        else:
+            changed[at:at] = changed[: chance.randrange(1, 40)]
+    return bytes(changed) or b"\0"
 
 
 def mutated(chance: random.Random, content: bytes, kinds: tuple[Mutate, ...]) -> bytes:
