@@ -75,7 +75,7 @@ def test_a_killed_bridge_is_started_again(start, platform) -> None:
     assert leftovers(platform) == []
 
 
-def test_it_ends_when_it_is_told_twice(bridge) -> None:
+def test_a_second_signal_ends_it(bridge) -> None:
     for _ in range(4):
         (process,) = bridge.run(bridge.route("outward", "/chatter")).values()
         wait_until(lambda: bridge.row("outward", "/chatter").get("alive"), "it counts")

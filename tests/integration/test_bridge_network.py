@@ -64,7 +64,7 @@ def show_participants() -> None:
                 announce(f"participant {prefix}")
 
 
-def test_no_network_at_all_is_said(start) -> None:
+def test_a_missing_network_is_reported(start) -> None:
     alone = ["unshare", "--net"]
     if subprocess.run([*alone, "true"], capture_output=True).returncode != 0:
         pytest.skip("a network namespace needs root")

@@ -149,7 +149,7 @@ def serve_as(type_name: str, reliability: str) -> None:
         spin_until(node, lambda: False, 1e6)
 
 
-def test_a_server_of_another_type_is_said(bridge, direction) -> None:
+def test_a_server_of_another_type_is_reported(bridge, direction) -> None:
     process = bridge.run(bridge.route(direction, "/lamp", SET_BOOL))[direction]
     server, client = sides(bridge, direction)
     where = "inside" if direction == "inward" else "outside"
@@ -163,7 +163,7 @@ def test_a_server_of_another_type_is_said(bridge, direction) -> None:
     assert len(re.findall(said, process.output, re.MULTILINE)) == 1
 
 
-def test_a_server_that_does_not_match_is_said(bridge) -> None:
+def test_a_server_that_does_not_match_is_reported(bridge) -> None:
     process = bridge.run(bridge.route("outward", "/lamp", SET_BOOL))["outward"]
     odd = bridge.outside(serve_as, SET_BOOL, "BEST_EFFORT")
     process.wait_for("^/lamp: has a server outside that DDS does not match: its QoS may not fit$")

@@ -33,7 +33,7 @@ HEARD = "I heard: 'Hello World"
 
 
 def say_much_and_leave(topic: str, count: int) -> None:
-    """Publish periodically; on request publish so many numbers at once and end."""
+    """Publish periodically; on request publish `count` numbers at once and end."""
     from rclpy.duration import Duration
 
     told: list[int] = []
@@ -128,7 +128,7 @@ def test_the_outside_publisher_offers_what_the_inside_one_does(bridge) -> None:
 
 
 @pytest.mark.parametrize("direction", ["inward", "outward"])
-def test_what_was_said_last_is_heard(bridge, direction) -> None:
+def test_the_last_message_is_received(bridge, direction) -> None:
     """A publisher that ends does not take back messages that the bridge has not taken yet."""
     bridge.run(bridge.route(direction, "/news"))
     source, target = bridge.outside, bridge.inside
@@ -145,7 +145,7 @@ def test_what_was_said_last_is_heard(bridge, direction) -> None:
     assert [int(number) for number in numbers] == list(range(MANY))
 
 
-def test_who_stands_still_hears_what_was_said_last(bridge) -> None:
+def test_a_slow_subscriber_receives_the_last_message(bridge) -> None:
     bridge.run(bridge.route("outward", "/news"))
     hearer = bridge.outside(hear, "/news", {"depth": MANY})
     speaker = bridge.inside(say_much_and_leave, "/news", MANY)
@@ -169,7 +169,7 @@ def test_a_killed_publisher_takes_the_bridges_with_it(bridge) -> None:
     watcher.wait_for("^publishers: none$")
 
 
-def test_nobody_outside_means_no_work(bridge) -> None:
+def test_no_subscriber_outside_means_no_work(bridge) -> None:
     bridge.run(bridge.route("outward", "/busy"))
     bridge.inside(say, "/busy", {}, 0.01)
     wait_until(lambda: bridge.row("outward", "/busy").get("state") == "ready", "the route is up")
@@ -213,7 +213,7 @@ def test_rate_and_size_limits_count_what_they_keep(bridge) -> None:
     assert bridge.row("outward", "/large")["too_large"] == 1
 
 
-def test_a_type_that_is_not_installed_is_said(bridge) -> None:
+def test_a_type_that_is_not_installed_is_reported(bridge) -> None:
     routes = bridge.run(
         bridge.route("outward", "/odd", "no_such_msgs/msg/Thing"), bridge.route("outward", "/ok")
     )
@@ -223,7 +223,7 @@ def test_a_type_that_is_not_installed_is_said(bridge) -> None:
     bridge.outside(hear, "/ok", {}).wait_for("^heard again")
 
 
-def test_a_route_that_cannot_be_made_is_said(bridge) -> None:
+def test_a_route_that_cannot_be_made_is_reported(bridge) -> None:
     routes = bridge.run(
         bridge.route("outward", "/odd", "std_srvs/srv/SetBool", outside="/no name"),
         bridge.route("outward", "/slow", max_hz=1e-320),
@@ -240,7 +240,7 @@ def test_a_route_that_cannot_be_made_is_said(bridge) -> None:
 
 
 @pytest.mark.parametrize("direction", ["inward", "outward"])
-def test_a_policy_that_cannot_match_is_said(bridge, direction) -> None:
+def test_a_policy_that_cannot_match_is_reported(bridge, direction) -> None:
     processes = bridge.run(bridge.route(direction, "/odd", qos={"reliability": "reliable"}))
     source = bridge.outside if direction == "inward" else bridge.inside
     source(say, "/odd", {"reliability": "best_effort"}, 0.05)
@@ -250,7 +250,7 @@ def test_a_policy_that_cannot_match_is_said(bridge, direction) -> None:
 
 
 @pytest.mark.parametrize("direction", ["inward", "outward"])
-def test_a_type_that_does_not_fit_is_said_once(bridge, direction) -> None:
+def test_a_type_that_does_not_fit_is_reported_once(bridge, direction) -> None:
     process = bridge.run(bridge.route(direction, "/odd", "std_msgs/msg/Int32"))[direction]
     source = bridge.outside if direction == "inward" else bridge.inside
     speaker = source(say, "/odd", {}, 0.05)

@@ -86,7 +86,7 @@ def test_what_is_there_is_not_overwritten(start, tmp_path) -> None:
         assert recording.span.messages == 1
 
 
-def test_nothing_to_record_is_said(start, tmp_path) -> None:
+def test_record_refuses_an_empty_selection(start, tmp_path) -> None:
     recorder = start(manycore_command("topic", "record", "-o", tmp_path / "a.mcap"))
     assert recorder.wait() == EXIT_BAD_INPUT
     assert "no topics given" in recorder.output
@@ -147,7 +147,7 @@ def test_a_player_does_not_play_to_another_type(start, platform, tmp_path, kind)
         del subscription
 
 
-def test_a_time_that_rolled_over_is_told_and_ends_nothing(start, tmp_path) -> None:
+def test_play_reports_a_gap_and_goes_on(start, tmp_path) -> None:
     end_s = (2**64 - 1 - START_NS) // NS_PER_S - 1
     bag = write_texts(tmp_path / "a.mcap", [("/a", 0, "x"), ("/a", end_s, "y")])
     hearer = start(peer_command(hear, "/a", {}))
@@ -159,7 +159,7 @@ def test_a_time_that_rolled_over_is_told_and_ends_nothing(start, tmp_path) -> No
     assert player.lines[-1].startswith("played 1 message; late by")
 
 
-def test_a_wrong_wish_of_a_player_is_said(start, tmp_path) -> None:
+def test_play_rejects_invalid_options(start, tmp_path) -> None:
     bag = write_texts(tmp_path / "a.mcap", [("/a", 0, "x"), ("/a", 1, "y")])
     for words, complaint in (
         (["--topics", "/b"], "expected the topic /b, found /a"),

@@ -190,7 +190,7 @@ def test_bridged_hops_are_parts_of_chains(bridge, manycore, tmp_path) -> None:
         assert all(part["count"] >= 1 for topic in parts for part in parts[topic][:2])
 
 
-def test_what_is_lost_is_told(talking, manycore, tmp_path) -> None:
+def test_lost_events_are_reported(talking, manycore, tmp_path) -> None:
     manycore("trace", "start", "--events", "128")
     wait_until(lambda: json.loads(manycore("trace", "status", "--json"))["lost"], "a ring is full")
     output = manycore("trace", "save", "-o", tmp_path / "trace.csv")

@@ -29,7 +29,7 @@ def tracepoints(tmp_path_factory) -> Path:
     return library
 
 
-def test_publish_and_take_are_told_with_handle_message_and_time(start, tracepoints) -> None:
+def test_publish_and_take_have_handle_message_and_time(start, tracepoints) -> None:
     preload = {"LD_PRELOAD": str(tracepoints)}
     listener = start(example_command("listener"), **preload)
     talker = start(example_command("talker"), **preload)

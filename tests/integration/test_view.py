@@ -164,7 +164,7 @@ def test_looking_wakes_no_node_and_joins_nothing(start, platform) -> None:
     watch.close()
 
 
-def test_a_death_is_told_from_a_leave(talking, platform, start) -> None:
+def test_a_death_differs_from_a_leave(talking, platform, start) -> None:
     talker, listener = talking
     watch = Watch(platform)
     assert watch.look().dead == ()

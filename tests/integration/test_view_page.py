@@ -137,7 +137,7 @@ def test_light_and_dark_are_chosen(view, browser) -> None:
     assert browser.driver.execute_script(shown) == before
 
 
-def test_events_are_told_once_and_lead_to_their_node(talking, view, browser) -> None:
+def test_events_appear_once_and_lead_to_their_node(talking, view, browser) -> None:
     """Also after a lost connection: the server then sends everything again."""
     browser.keep_sockets()
     browser.open(view[1])
