@@ -22,7 +22,7 @@ from rmw_manycore_py.errors import DefinitionError
 from rmw_manycore_py.interfaces.definition import read_definition
 
 CONVERT = {"msg": convert_msg_to_idl, "srv": convert_srv_to_idl, "action": convert_action_to_idl}
-# Of the names that are made, also by mutation: those that the generated C or C++ could not have.
+# Keywords of C and C++ among the generated names, also those of mutations.
 C_WORDS = {
     *("bool", "char", "class", "const", "default", "double", "enum", "false", "float", "int"),
     *("long", "short", "struct", "true", "typedef", "unsigned"),

@@ -17,7 +17,7 @@ _OTHERS = ("intensity", "rgb", "ring", "normal", "_", "t")
 
 @dataclass(frozen=True)
 class Made:
-    """A file; PCL `invents` points for some that are broken."""
+    """A file; PCL `invents` points for some broken ones."""
 
     content: bytes
     invents: bool = False
@@ -167,7 +167,7 @@ class _Cloud:
         if self.flaw():
             lines = lines[:-1]
         elif chance.random() < 0.1:
-            lines.append("1 2 3 4 5 6 7")  # more than the header tells
+            lines.append("1 2 3 4 5 6 7")  # one line more than POINTS
         text = end.join(lines) + (end if lines and chance.random() < 0.9 else "")
         return text.encode()
 

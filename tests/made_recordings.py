@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""MCAP files made at random, as the writers of other programs may make them."""
+"""MCAP files made at random, in the variety that other programs write."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _PROFILES = (
         "liveliness_lease_duration: {sec: 0, nsec: 0}}\n"
     ),
 )
-_PRIVATE = 0x81  # first opcode that a format of one's own may use
+_PRIVATE = 0x81  # first opcode of private records
 _HEAD = struct.Struct("<BQ")
 _END = FOOTER_SIZE + len(MCAP0_MAGIC)
 
@@ -76,7 +76,7 @@ def _written(chance: random.Random) -> bytes:
             writer.add_metadata("rosbag2", {"serialized_metadata": chance.choice(_PROFILES)})
         if chance.random() < 0.05:
             writer.add_attachment(0, 0, "a.txt", "text/plain", b"\x05" * 30)
-    if chance.random() < 0.05:  # which means that a writer does not count them
+    if chance.random() < 0.05:  # allowed for writers that do not count
         writer._Writer__statistics.channel_message_counts.clear()
     writer.finish()
     return file.getvalue()

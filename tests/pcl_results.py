@@ -1,11 +1,10 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """What PCL 1.13 reads from the files of made_clouds.py, as checksums: 0 where it refuses a file.
 
-Made anew with the program of tests/programs/read_pcd.cpp:
+Files from which PCL invents points, or which crash it, count as refused. The program of
+tests/programs/read_pcd.cpp makes the results anew:
 
     python tests/pcl_results.py read_pcd 10000
-
-Refused here are also the files from which PCL invents points, or which end the process.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ def _lines(reader: str, paths: list[Path]) -> list[str]:
         text = "".join(f"{path}\n" for path in paths[len(lines) :])
         done = subprocess.run([reader], input=text, capture_output=True, text=True, check=False)
         lines += done.stdout.splitlines()
-        if len(lines) < len(paths):  # the process has ended at this file
+        if len(lines) < len(paths):  # this file has crashed it
             lines.append("refused")
     return lines
 

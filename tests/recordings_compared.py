@@ -24,7 +24,7 @@ Found = list[tuple[int, str, bytes]]  # time, topic, data
 
 
 def ours(path: Path) -> tuple[Found, Counter[tuple[str, str]], list[int], bool]:
-    """Return messages, their numbers per topic and type, the ends of gaps, whether it is whole."""
+    """Return messages, their counts per topic and type, the ends of gaps; whether it is whole."""
     with Recording(path) as recording:
         topics = {row.name for row in recording.topics}
         found = [(m.recorded_ns, m.topic, m.data) for m in recording.messages(topics)]
