@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from own_shm import can_mount
 from support import REPOSITORY
 
 INSTALL_TIMEOUT_S = 1800
@@ -66,12 +67,6 @@ def _wheel(python: Path, directory: Path, mounts: str, *options: str) -> Path:
     words = shlex.join(map(str, command))
     run(*isolated, "sh", "-c", mounts + words, env={**os.environ, "TMPDIR": str(temporary)})
     return next(directory.glob("*.whl"))
-
-
-def can_mount() -> bool:
-    """Return whether this user may create a mount namespace."""
-    probe = ["unshare", "--mount", "true"]
-    return os.getuid() == 0 and subprocess.run(probe, capture_output=True).returncode == 0
 
 
 class Installation:

@@ -16,7 +16,7 @@ def own_shm_command(size_mib: int, command: list[str]) -> list[str]:
 
 
 def can_mount() -> bool:
-    """Return whether such commands can be run here."""
+    """Return whether this user may mount file systems in a mount namespace."""
     if os.getuid() != 0:
         return False
     return subprocess.run(own_shm_command(1, ["true"]), capture_output=True).returncode == 0

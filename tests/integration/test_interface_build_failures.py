@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 from advice import quoted, run_quoted
 from building import TINY, interface, write_definitions
-from installing import READ_ONLY, can_mount
+from installing import READ_ONLY
+from own_shm import can_mount
 from support import IS_MANYCORE, manycore_command, wait_until
 
 pytestmark = [

@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-
 import pytest
 from advice import run_quoted
 from building import write_definitions
+from own_shm import can_mount
 from recordings import NS_PER_S, START_NS, string_row, text_message, write_texts
 from ros_support import peer_node, spin_until, type_of
 from speakers import hear
@@ -40,13 +38,6 @@ exit $status
 def on_small_disk(directory: object, *command: object) -> list[str]:
     """Return a command that runs with its directory on a small disk, then as its error advises."""
     return ["unshare", "--mount", "sh", "-c", ON_SMALL_DISK, str(directory), *map(str, command)]
-
-
-def can_mount(directory: object = "/mnt") -> bool:
-    if os.getuid() != 0:
-        return False
-    command = ["unshare", "--mount", "mount", "-t", "tmpfs", "tmpfs", str(directory)]
-    return subprocess.run(command, capture_output=True).returncode == 0
 
 
 @pytest.mark.skipif(not can_mount(), reason="needs root and a mount namespace")
