@@ -7,6 +7,7 @@ import ast
 from pathlib import Path
 
 import pytest
+from comparing import FEW
 from parameter_files import (
     Generator,
     compare_command_lines,
@@ -19,13 +20,13 @@ from support import peer_command
 
 
 def test_generated_files_are_read_as_by_a_node(node, tmp_path: Path) -> None:
-    outcomes, wrong = compare_files(node.context, tmp_path, range(500))
+    outcomes, wrong = compare_files(node.context, tmp_path, range(FEW))
     assert wrong == ""
     assert min(outcomes[kind] for kind in ("some", "none", "refused")) > 50, outcomes
 
 
 def test_generated_command_lines_give_what_launch_gives(node, tmp_path: Path) -> None:
-    assert compare_command_lines(node.context, tmp_path, range(500)) == ""
+    assert compare_command_lines(node.context, tmp_path, range(FEW)) == ""
 
 
 @pytest.mark.parametrize("number", range(3))

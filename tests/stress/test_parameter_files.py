@@ -1,5 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Many generated parameter files and command lines, against nodes that are given the same."""
+"""Many generated parameter files and command lines, read here and by nodes.
+
+tests/rmw/test_parameter_files.py has the first of them.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from pathlib import Path
 
 import pytest
 import rclpy
-from comparing import MANY
+from comparing import FEW, MANY
 from parameter_files import (
     Generator,
     compare_command_lines,
@@ -32,11 +35,11 @@ def context(platform):
 
 
 def test_files_are_read_as_by_a_node(context, tmp_path: Path) -> None:
-    assert compare_files(context, tmp_path, range(MANY))[1] == ""
+    assert compare_files(context, tmp_path, range(FEW, MANY))[1] == ""
 
 
 def test_command_lines_give_what_launch_gives(context, tmp_path: Path) -> None:
-    assert compare_command_lines(context, tmp_path, range(MANY)) == ""
+    assert compare_command_lines(context, tmp_path, range(FEW, MANY)) == ""
 
 
 def test_files_are_read_as_by_nodes_that_are_started_with_them(start, tmp_path: Path) -> None:
