@@ -29,37 +29,37 @@ class Progress:
 
     def __init__(self, what: str) -> None:
         self._what = what
-        self._start_s = self._told_s = time.monotonic()
+        self._start_s = self._reported_s = time.monotonic()
         self._is_terminal = sys.stdout.isatty()
         self._packages: set[str] = set()
-        self._say(what)
+        self._print(what)
 
     def read(self, line: str) -> None:
         """Process a line of output."""
         if step := NINJA_STEP.match(line):
-            self._tell(f"{step[1]} of {step[2]}")
+            self._report(f"{step[1]} of {step[2]}")
         elif package := PIP_PACKAGE.match(line):
             self._packages.add(package[1])
-            self._tell(f"{len(self._packages)} found")
+            self._report(f"{len(self._packages)} found")
         elif download := PIP_DOWNLOAD.match(line):
-            self._tell(f"{len(self._packages)} found, downloading {download[1]} ({download[2]})")
+            self._report(f"{len(self._packages)} found, downloading {download[1]} ({download[2]})")
         elif install := PIP_INSTALL.match(line):
-            self._tell(f"unpacking {len(install[1].split(','))}")
+            self._report(f"unpacking {len(install[1].split(','))}")
 
     def end(self, verdict: str) -> None:
         """Print the result."""
         seconds = time.monotonic() - self._start_s
-        self._say(f"{self._what}: {verdict} in {seconds:.0f} s")
+        self._print(f"{self._what}: {verdict} in {seconds:.0f} s")
         if self._is_terminal:
             print(flush=True)
 
-    def _tell(self, how_far: str) -> None:
+    def _report(self, how_far: str) -> None:
         now_s = time.monotonic()
-        if self._is_terminal or now_s - self._told_s > QUIET_S:
-            self._told_s = now_s
-            self._say(f"{self._what}: {how_far}")
+        if self._is_terminal or now_s - self._reported_s > QUIET_S:
+            self._reported_s = now_s
+            self._print(f"{self._what}: {how_far}")
 
-    def _say(self, text: str) -> None:
+    def _print(self, text: str) -> None:
         print(f"\r\033[K{text}" if self._is_terminal else text + "\n", end="", flush=True)
 
 
