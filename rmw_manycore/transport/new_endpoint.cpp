@@ -56,6 +56,7 @@ uint32_t new_endpoint(
   entry.incompatible_policy.store(0);
   entry.asserted_ns.store(ManualLiveliness::never);
   entry.dead_publishers.store(0);
+  entry.died.store(0);
   return taken;
 }
 
@@ -85,6 +86,7 @@ uint32_t enter_graph(
     hand->let_go();
   }
   registry.link_endpoint(taken, Registry::Chain::live);
+  registry.raise_changes(entry.topic_hash);
   return taken;
 }
 

@@ -20,8 +20,8 @@ namespace {
 const Role repairer("repairer", [](Lines & test, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
   const Registry::Lock lock(registry);
-  for (std::atomic<uint32_t> & bucket : registry.header().topic_buckets) {
-    bucket = nothing;
+  for (TopicBucket & bucket : registry.header().topic_buckets) {
+    bucket.first = nothing;
   }
   test.say("holding");
   raise(SIGSTOP);

@@ -11,7 +11,7 @@
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "platform_of_test.hpp"
-#include "transport/qos/qos_compatibility.hpp"
+#include "transport/peers/qos_compatibility.hpp"
 
 using namespace manycore;
 

@@ -30,8 +30,8 @@ const Role lock_holder("lock_holder", [](Lines & test, const Arguments & argumen
   registry.nodes().take("nodes");
   registry.clusters().at(1).allocate(1 << 20);
   // .. and broken chains.
-  for (std::atomic<uint32_t> & bucket : registry.header().topic_buckets) {
-    bucket = nothing;
+  for (TopicBucket & bucket : registry.header().topic_buckets) {
+    bucket.first = nothing;
   }
   test.say("holding");
   raise(SIGSTOP);
@@ -308,7 +308,7 @@ TEST_CASE("a damaged lock that names no seat is taken over, and the registry is 
   const Standstill receive_thread(f.platform, 1);  // it would take the lock over as well
   constexpr uint64_t no_seat = UINT64_MAX;
   std::memcpy(static_cast<void *>(&f.registry.header().mutex), &no_seat, sizeof no_seat);
-  f.registry.header().topic_buckets[hash_name("/x") % topic_bucket_count] = nothing;
+  f.registry.header().topic_buckets[hash_name("/x") % topic_bucket_count].first = nothing;
   { const Registry::Lock lock(f.registry, Registry::Lock::short_wait_ns); }
   CHECK(f.process->graph().endpoints_of("/x").size() == 1);
   CHECK_FALSE(f.registry.header().mutex.owner());

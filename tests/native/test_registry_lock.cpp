@@ -100,7 +100,7 @@ TEST_CASE("killed while it owns the lock in another PID namespace: the next owne
   Fixture f;
   const auto publisher = f.process->create_publisher(on_topic("/x", keep_last(1)));
   std::atomic<uint32_t> & bucket =
-    f.registry.header().topic_buckets[hash_name("/x") % topic_bucket_count];
+    f.registry.header().topic_buckets[hash_name("/x") % topic_bucket_count].first;
   for (int i = 0; i < 20; ++i) {
     Child owns = contained_owner(f);
     const Standstill no_other(f.platform, 1);

@@ -25,7 +25,8 @@ NATIVE_BELOW = {
 # interface, above all of its folders.
 FOLDERS = {
     "transport": [
-        *("layout", "trace", "registry", "queue", "transfer", "topic_dsm", "qos", "matching"),
+        *("layout", "trace", "registry", "peers", "queue", "transfer", "topic_dsm", "qos"),
+        "matching",
         *("notification", "movers", "lifecycle", "waiting", "publisher", "subscription"),
     ],
     "rmw": [

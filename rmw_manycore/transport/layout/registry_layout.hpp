@@ -134,7 +134,9 @@ struct EndpointEntry {
   /// Subscription: publishers that died and were not replaced yet.
   std::atomic<uint32_t> dead_publishers;
   Transfer transfer;  ///< of the topic, from the topic table
-  uint8_t reserved[7];
+  /// Its process was killed. Stored before the slot ceases to be live.
+  std::atomic<uint8_t> died;
+  uint8_t reserved[6];
   EndpointCounters counters;
   char topic[name_bytes];
   char type[name_bytes];
@@ -189,6 +191,16 @@ struct Hand {
 };
 static_assert(sizeof(Hand) == 16);
 
+/// The endpoints of the topics whose names have one hash value modulo the number of buckets.
+struct TopicBucket {
+  /// Raised under the registry lock after each change of one of their rows, and in all buckets by a
+  /// repair. A process that finds it moved looks at the rows (docs/model/freeing.pml).
+  std::atomic<uint64_t> changes;
+  std::atomic<uint32_t> first;  ///< the youngest one (derived); see EndpointEntry::next_of_topic
+  uint32_t reserved;
+};
+static_assert(sizeof(TopicBucket) == 16);
+
 using GraphWatchers = SlotSet<process_capacity>;
 static_assert(sizeof(GraphWatchers) == 128);
 using ClosingEndpoints = SlotSet<endpoint_capacity>;
@@ -220,7 +232,7 @@ struct RegistryHeader {
   ClosingEndpoints closing;           ///< endpoints in a state from closing on (derived)
   std::atomic<uint64_t> death_count;  ///< incremented after the entry in `deaths` is written
   Death deaths[kept_deaths];  ///< ring; the next death goes to index death_count mod kept_deaths
-  std::atomic<uint32_t> topic_buckets[topic_bucket_count];   ///< live endpoints
+  TopicBucket topic_buckets[topic_bucket_count];             ///< live endpoints
   std::atomic<uint32_t> orphan_buckets[topic_bucket_count];  ///< publishers that are gone
   Hand hands[lifeline_count];                                ///< by line
   LockSeat seats[lock_seat_count];

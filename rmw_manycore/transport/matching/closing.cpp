@@ -118,7 +118,9 @@ void leave_chain(Registry & registry, uint32_t endpoint) {
 void close(Registry & registry, uint32_t endpoint, bool died, std::vector<uint32_t> & unread) {
   EndpointEntry & entry = registry.endpoints()[endpoint];
   if (entry.slot.state.load() == SlotState::live) {
+    entry.died.store(died ? 1 : 0);
     entry.slot.state.store(SlotState::closing);
+    registry.raise_changes(entry.topic_hash);
     leave_chain(registry, endpoint);
     registry.header().closing.add(endpoint);
     ++registry.header().closing_count;

@@ -6,7 +6,7 @@
 #include "platform/error.hpp"
 #include "transport/matching/free_entries.hpp"
 #include "transport/qos/liveliness.hpp"
-#include "transport/qos/qos_compatibility.hpp"
+#include "transport/peers/qos_compatibility.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/registry/snapshot.hpp"
 #include "transport/topic_dsm/last_published.hpp"

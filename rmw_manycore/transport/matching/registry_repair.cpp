@@ -164,6 +164,10 @@ void Registry::repair() {
   mark_blocks_in_hands();
   link_all_endpoints();
   matches::repair(*this);
+  // The dead owner may have changed a row, and not raised them.
+  for (TopicBucket & bucket : header().topic_buckets) {
+    bucket.changes.fetch_add(1, std::memory_order_seq_cst);
+  }
 }
 
 /// A block that its endpoint still leads to was about to change hands: it stays with the endpoint.
@@ -211,7 +215,7 @@ void Registry::link_all_of(Chain chain) {
     next = slot;
   }
   for (uint32_t bucket = 0; bucket < topic_bucket_count; ++bucket) {
-    buckets(chain)[bucket].store(youngest[bucket], std::memory_order_release);
+    bucket_of(bucket, chain).store(youngest[bucket], std::memory_order_release);
   }
 }
 

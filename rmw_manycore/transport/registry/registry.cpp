@@ -102,7 +102,7 @@ void Registry::create(
   }
   header.topic_count = static_cast<uint32_t>(topics.size());
   for (uint32_t i = 0; i < topic_bucket_count; ++i) {
-    header.topic_buckets[i].store(nothing, std::memory_order_relaxed);
+    header.topic_buckets[i].first.store(nothing, std::memory_order_relaxed);
     header.orphan_buckets[i].store(nothing, std::memory_order_relaxed);
   }
   memory.reserve(topic_table_offset, std::max<size_t>(topics.size(), 1) * sizeof(TopicEntry));
@@ -216,12 +216,19 @@ const TopicEntry * Registry::find_topic(const std::string & name) const noexcept
   return nullptr;
 }
 
-std::atomic<uint32_t> * Registry::buckets(Chain chain) const noexcept {
-  return chain == Chain::live ? header().topic_buckets : header().orphan_buckets;
+std::atomic<uint32_t> & Registry::bucket_of(uint64_t topic_hash, Chain chain) const noexcept {
+  const uint64_t index = topic_hash % topic_bucket_count;
+  return chain == Chain::live ? header().topic_buckets[index].first : header().orphan_buckets[index];
 }
 
-std::atomic<uint32_t> & Registry::bucket_of(uint64_t topic_hash, Chain chain) const noexcept {
-  return buckets(chain)[topic_hash % topic_bucket_count];
+void Registry::raise_changes(uint64_t topic_hash) noexcept {
+  header().topic_buckets[topic_hash % topic_bucket_count].changes.fetch_add(
+    1, std::memory_order_seq_cst);
+}
+
+uint64_t Registry::changes_of(uint64_t topic_hash) const noexcept {
+  return header().topic_buckets[topic_hash % topic_bucket_count].changes.load(
+    std::memory_order_seq_cst);
 }
 
 // The lock excludes concurrent changes of chains. Graph reads without the lock check afterwards
@@ -244,7 +251,8 @@ void Registry::link_before(uint32_t slot, uint32_t next) noexcept {
 void Registry::link_endpoint(uint32_t slot, Chain chain) noexcept {
   std::atomic<uint32_t> & bucket = bucket_of(endpoints_[slot].topic_hash, chain);
   link_before(slot, bucket.load(chained));
-  bucket.store(slot, chained);
+  // Release: a walk that begins at the bucket likewise.
+  bucket.store(slot, std::memory_order_release);
 }
 
 /// The link that leads to an endpoint in its chain. Searches the chain if `previous_of_topic` is
@@ -317,6 +325,41 @@ void Registry::for_each_older(
     }
     path.push_back({*next, incarnation_of_next});
     visit(*next, incarnation_of_next);
+  }
+}
+
+/// An empty path stands for the bucket, where a walk goes back to if all of its path has left: new
+/// endpoints are in front, and what it has visited has left.
+void Registry::walk_bucket(
+  uint64_t topic_hash, const std::function<bool(uint32_t, uint32_t)> & visit) const {
+  struct Place {
+    uint32_t slot;
+    uint32_t incarnation;
+  };
+  std::vector<Place> path;
+  const auto next_of_path = [&] {
+    return path.empty()
+             ? std::optional(bucket_of(topic_hash, Chain::live).load(std::memory_order_acquire))
+             : next_of(path.back().slot, path.back().incarnation);
+  };
+  // The limit ends the walk in a damaged chain, which may have a cycle.
+  for (uint32_t i = 0; i < 4 * endpoint_capacity; ++i) {
+    const std::optional<uint32_t> next = next_of_path();
+    if (!next) {
+      path.pop_back();
+      continue;
+    }
+    if (*next >= endpoints_.high_water()) {
+      return;
+    }
+    const uint32_t incarnation = endpoints_[*next].slot.incarnation.load();
+    if (next_of_path() != next) {
+      continue;  // the next endpoint may have left, and its slot may be in another chain
+    }
+    path.push_back({*next, incarnation});
+    if (!visit(*next, incarnation)) {
+      return;
+    }
   }
 }
 

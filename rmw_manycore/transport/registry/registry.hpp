@@ -183,12 +183,23 @@ public:
   /// meanwhile may be visited or missed; all others are visited.
   void for_each_older(uint32_t slot, const std::function<void(uint32_t, uint32_t)> & visit) const;
 
+  /// Calls `visit(slot, incarnation)` for each endpoint in the bucket of a topic, from the youngest
+  /// on, until it returns false; other topics may share the bucket. Needs no lock. Endpoints that
+  /// leave meanwhile may be visited or missed; all others are visited, once
+  /// (docs/model/next/chains.pml).
+  void walk_bucket(
+    uint64_t topic_hash, const std::function<bool(uint32_t, uint32_t)> & visit) const;
+
+  /// Tells the endpoints of a bucket to look at its rows. The caller holds the lock.
+  void raise_changes(uint64_t topic_hash) noexcept;
+  /// seq_cst: the caller has stored what a process checks that changed a row.
+  uint64_t changes_of(uint64_t topic_hash) const noexcept;
+
   /// Increments the graph generation and wakes the threads that wait for graph changes.
   void graph_changed() noexcept;
 
 private:
   friend class Lock;
-  std::atomic<uint32_t> * buckets(Chain chain) const noexcept;
   std::atomic<uint32_t> & bucket_of(uint64_t topic_hash, Chain chain) const noexcept;
   void link_before(uint32_t slot, uint32_t next) noexcept;
   std::atomic<uint32_t> * link_to(uint32_t slot, Chain chain) noexcept;

@@ -20,7 +20,7 @@ public:
   EntryCopy(const Table<Entry> & table, uint32_t slot) noexcept
   : slot_(table[slot].slot),
     incarnation_(slot_.incarnation.load(std::memory_order_acquire)),
-    was_live_(slot_.state.load(std::memory_order_acquire) == SlotState::live) {
+    state_(slot_.state.load(std::memory_order_acquire)) {
     copy_words(&table[slot]);
   }
 
@@ -28,7 +28,18 @@ public:
   /// True if the copy is consistent and the entry still exists.
   bool holds() const noexcept {
     std::atomic_thread_fence(std::memory_order_acquire);
-    return was_live_ && slot_.state.load(std::memory_order_relaxed) == SlotState::live &&
+    return state_ == SlotState::live &&
+           slot_.state.load(std::memory_order_relaxed) == SlotState::live &&
+           slot_.incarnation.load(std::memory_order_relaxed) == incarnation_;
+  }
+
+  /// State before the copy.
+  SlotState state() const noexcept { return state_; }
+  uint32_t incarnation() const noexcept { return incarnation_; }
+  /// True if the copy is consistent: the slot was in one use, of whatever state, before and after.
+  bool is_whole() const noexcept {
+    std::atomic_thread_fence(std::memory_order_acquire);
+    return state_ != SlotState::free &&
            slot_.incarnation.load(std::memory_order_relaxed) == incarnation_;
   }
 
@@ -50,7 +61,7 @@ private:
   const Slot & slot_;
   /// Loaded before the state, so a use of the slot that begins in between is detected.
   uint32_t incarnation_;
-  bool was_live_;
+  SlotState state_;
   alignas(Entry) std::byte bytes_[sizeof(Entry)];
 };
 

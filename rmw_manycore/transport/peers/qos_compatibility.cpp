@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-#include "transport/qos/qos_compatibility.hpp"
+#include "transport/peers/qos_compatibility.hpp"
 
 namespace manycore {
 
