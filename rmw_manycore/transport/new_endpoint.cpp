@@ -47,15 +47,12 @@ uint32_t new_endpoint(
   entry.type_hash_version = spec.type_hash.version;
   std::copy(spec.type_hash.value.begin(), spec.type_hash.value.end(), entry.type_hash);
   for (std::atomic<uint64_t> * count :
-       {&entry.matched_total, &entry.matched_current, &entry.incompatible_total,
-        &entry.incompatible_types, &entry.counters.messages, &entry.counters.bytes,
-        &entry.counters.lost, &entry.counters.expired, &entry.counters.refused,
-        &entry.counters.overwritten, &entry.counters.dropped}) {
+       {&entry.counters.messages, &entry.counters.bytes, &entry.counters.lost,
+        &entry.counters.expired, &entry.counters.refused, &entry.counters.overwritten,
+        &entry.counters.dropped}) {
     count->store(0);
   }
-  entry.incompatible_policy.store(0);
   entry.asserted_ns.store(ManualLiveliness::never);
-  entry.dead_publishers.store(0);
   entry.died.store(0);
   return taken;
 }
@@ -85,7 +82,7 @@ uint32_t enter_graph(
   if (hand != nullptr) {
     hand->let_go();
   }
-  registry.link_endpoint(taken, Registry::Chain::live);
+  registry.link_endpoint(taken);
   registry.raise_changes(entry.topic_hash);
   return taken;
 }

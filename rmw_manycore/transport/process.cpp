@@ -13,9 +13,8 @@
 #include "transport/lifecycle/receive_thread_watcher.hpp"
 #include "transport/lifecycle/slot_and_line.hpp"
 #include "transport/lifecycle/trace_control.hpp"
-#include "transport/matching/connecting.hpp"
+#include "transport/matching/joining.hpp"
 #include "transport/matching/leaving.hpp"
-#include "transport/matching/matching.hpp"
 #include "transport/new_endpoint.hpp"
 #include "transport/publisher/publisher_impl.hpp"
 #include "transport/qos/qos_ranges.hpp"
@@ -221,13 +220,13 @@ uint32_t Process::Impl::publish_endpoint(const EndpointSpec & spec, EndpointKind
 uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kind) {
   check_qos_ranges(spec);
   membership->require();
-  matching::require_reach(*registry, spec.topic, kind);
+  joining::require_reach(*registry, spec.topic, kind);
   const uint32_t taken = publish_endpoint(spec, kind);
   try {
     if (kind == EndpointKind::publisher) {
       TopicDsmWriter::open_first_generation(*registry, taken);
     }
-    matching::connect(*registry, *membership, taken);
+    joining::join(*registry, *membership, taken);
   } catch (...) {
     if (membership->holds()) {
       leave_graph(*registry, taken);

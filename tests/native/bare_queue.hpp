@@ -30,7 +30,7 @@ public:
 
   manycore::SubscriptionHeader & header() noexcept { return *header_; }
   void push(const manycore::Hint & hint) noexcept {
-    manycore::subscriber_queue::push(*header_, hint, [](const manycore::Hint &) {});
+    manycore::subscriber_queue::push(*header_, hint);
   }
   std::optional<manycore::Hint> pop() noexcept { return manycore::subscriber_queue::pop(*header_); }
   uint64_t displaced() const noexcept { return header_->displaced().hints; }

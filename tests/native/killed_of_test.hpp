@@ -11,8 +11,6 @@
 #include "platform_of_test.hpp"
 #include "stepped_child.hpp"
 #include "transport/lifecycle/configurator.hpp"
-#include "transport/queue/source_table.hpp"
-#include "transport/topic_dsm/reader_table.hpp"
 #include "transport/transfer/landing.hpp"
 #include "waiting.hpp"
 
@@ -110,51 +108,20 @@ struct Fixture {
     CHECK(subscription->matched().current == 1);
   }
 
-  /// A sum that changes with each store to what these endpoints have of their matches.
+  /// A sum that changes with each change of a row of these endpoints' topics.
   uint64_t matches() {
-    uint64_t sum = has_landing() ? 1 : 0;
-    const auto add_publisher = [&](const Publisher & each) {
-      sum += inspection.readers_of(each) + each.matched().current;
-    };
-    const auto add_subscription = [&](const Subscription & each) {
-      SubscriptionHeader & header = inspection.header_of(each);
-      visit_source_table(
-        inspection.registry().clusters().at(1), header, [&](const SourceEntry & source, uint32_t) {
-          sum += static_cast<uint64_t>(source.state.load()) << 32;
-          return false;
-        });
-      sum += each.matched().current;
-    };
-    add_publisher(*publisher);
-    add_subscription(*subscription);
-    add_subscription(*other);
-    for (const auto & each : publishers) {
-      add_publisher(*each);
-    }
-    for (const auto & each : subscriptions) {
-      add_subscription(*each);
-    }
-    return sum;
+    Registry & registry = inspection.registry();
+    return registry.changes_of(hash_name(topic)) + registry.changes_of(hash_name(moved_topic)) +
+           registry.changes_of(hash_name(crowded_topic)) + (has_landing() ? 1 : 0);
   }
-
-  /// True if the publisher that is transferred has a landing in cluster 2.
   bool has_landing() {
-    const Cluster & own = inspection.registry().clusters().at(1);
-    const LandingTable * const table =
-      resident ? landing_table(own, inspection.header_of(*publishers.front())) : nullptr;
+    const LandingTable * const table = landings();
     return table != nullptr && table->landings[1].load() != 0;
   }
-
-  /// True while a match of the publisher is undone by half.
-  bool has_revoked_reader() {
+  const LandingTable * landings() {
     Clusters & clusters = inspection.registry().clusters();
-    bool found = false;
-    for_each_reader(
-      clusters.at(1), inspection.header_of(*publisher), [&](const ReaderEntry & reader) {
-        const auto * const source = clusters.find<SourceEntry>(SegmentRef{reader.source.load()});
-        found = found || source->state.load() == SourceState::revoked;
-      });
-    return found;
+    return resident ? landing_table(clusters.at(1), inspection.header_of(*publishers.front()))
+                    : nullptr;
   }
 
   void check_crowd() {

@@ -15,8 +15,8 @@
 
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "transport/peers/peers.hpp"
 #include "transport/registry/smem_charge.hpp"
-#include "transport/topic_dsm/reader_table.hpp"
 #include "waiting.hpp"
 
 using namespace manycore;
@@ -242,12 +242,8 @@ uint32_t Inspection::generations_of(const Publisher & publisher) {
 }
 
 uint32_t Inspection::readers_of(const Publisher & publisher) {
-  const SegmentRef block = registry_.endpoints()[slot_of(publisher.gid())].block;
-  uint32_t count = 0;
-  for_each_reader(
-    registry_.clusters().at(block.cluster()), header_of(publisher),
-    [&](ReaderEntry &) { ++count; });
-  return count;
+  const EndpointEntry & entry = registry_.endpoints()[slot_of(publisher.gid())];
+  return static_cast<uint32_t>(peers_of(registry_, entry).size());
 }
 
 TopicDsmHeader & Inspection::header_of(const Publisher & publisher) {

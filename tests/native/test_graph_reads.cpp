@@ -40,7 +40,7 @@ const Role reader("reader", [](Lines & test, const Arguments & arguments) {
 const Role changer("changer", [](Lines & test, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
   const Registry::Lock lock(registry);
-  registry.unlink_endpoint(0, Registry::Chain::live);
+  registry.unlink_endpoint(0);
   test.say("changing");
   raise(SIGSTOP);
 });

@@ -44,14 +44,19 @@ bool kill_after_change(Fixture & f, const std::string & role, size_t changes) {
 void check_kills_after_changes(Fixture & f, const std::string & role, size_t all_changes) {
   f.platform.receive_thread(1);
   f.check_that_it_goes_on();
+  const bool has_landing = f.has_landing();
   for (size_t changes = 1; changes <= all_changes; ++changes) {
     if (!killed_of_test::asked_tries() && changes % 7 > 2) {
       continue;
     }
     CAPTURE(changes);
-    REQUIRE(kill_after_change(f, role, changes));
+    if (!kill_after_change(f, role, changes)) {
+      CHECK(changes > 1);
+      return;
+    }
     f.wait_until_alone();
     f.check_that_it_goes_on();
+    CHECK(f.has_landing() == has_landing);
     CHECK(f.has_landing() == f.resident.has_value());
   }
 }
@@ -90,7 +95,7 @@ TEST_CASE("killed in a match that it undoes, and then another process in another
   f.platform.receive_thread(1);
   SteppedChild child("closes", {f.platform.name()});
   const Standstill no_reaper(f.platform, 1);
-  while (!f.has_revoked_reader()) {
+  while (f.inspection.closing_endpoints() == 0) {
     REQUIRE(child.step(1) == 1);
   }
   child.kill();
@@ -118,7 +123,6 @@ TEST_CASE("killed thread by thread while it closes: nothing is freed that publis
   while (f.inspection.closing_endpoints() == 0) {
     REQUIRE(child.step(1) == 1);
   }
-  REQUIRE(f.inspection.readers_of(*f.publisher) == 3);
   child.end_main_thread();
   const Refusal refusal = refusal_of(
     [&] { const Registry::Lock lock(f.inspection.registry(), Registry::Lock::short_wait_ns); });

@@ -71,18 +71,15 @@ TEST_CASE("a subscription closed while its publisher writes is freed after that"
   }
 }
 
-TEST_CASE("a topic DSM taken whole while a receive thread is in its phase is freed after that") {
+TEST_CASE("a topic DSM taken whole is freed at once, although a receive thread is in its phase") {
   Fixture f;
   f.platform.receive_thread(1);  // it resets its phase when it starts
   const auto subscription = f.subscription(keep_last(10));
   f.drive(1);
-  {
-    // Inside a cluster, the receive thread forwards nothing: its phase stays as it is.
-    const OddPhase phase(f.inspection.registry().clusters().at(1).header().phase);
-    CHECK(take_all(*subscription) == numbers(1, 1));
-    CHECK(f.inspection.closing_endpoints() == 1);
-  }
-  f.inspection.wait_until_swept();
+  // Inside a cluster, the receive thread forwards nothing: its phase stays as it is.
+  const OddPhase phase(f.inspection.registry().clusters().at(1).header().phase);
+  CHECK(take_all(*subscription) == numbers(1, 1));
+  CHECK(f.inspection.closing_endpoints() == 0);
 }
 
 TEST_CASE("newer messages of a live publisher displace them at the next take") {

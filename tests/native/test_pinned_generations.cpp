@@ -8,7 +8,8 @@
 #include "platform_of_test.hpp"
 #include "stepped_child.hpp"
 #include "transport/lifecycle/configurator.hpp"
-#include "transport/topic_dsm/reader_table.hpp"
+#include "transport/peers/peers.hpp"
+#include "transport/queue/reading.hpp"
 
 using namespace manycore;
 
@@ -44,16 +45,16 @@ Refusal refusal_of_growth(Publisher & publisher, uint64_t & number, uint32_t of_
 struct Fixture {
   explicit Fixture(const Qos & qos) : publisher(process->create_publisher(on_topic(topic, qos))) {}
 
-  /// Word of the only source of the child's subscription.
+  /// Word of the child's subscription, the only reader.
   const std::atomic<uint64_t> & reading() {
     Registry & registry = inspection.registry();
-    const SourceEntry * found = nullptr;
-    for_each_reader(
-      registry.clusters().at(1), inspection.header_of(*publisher), [&](const ReaderEntry & reader) {
-        found = registry.clusters().find<SourceEntry>(SegmentRef{reader.source.load()});
-      });
-    REQUIRE(found != nullptr);
-    return found->reading;
+    const EndpointEntry & entry = registry.endpoints()[inspection.slot_of(publisher->gid())];
+    const Peer reader = peers_of(registry, entry).at(0);
+    return registry.clusters().find<SubscriptionHeader>(reader.block)->reading;
+  }
+  uint64_t header_only() {
+    const uint32_t slot = inspection.slot_of(publisher->gid());
+    return Reading::header_only(slot, inspection.registry().endpoints()[slot].slot.incarnation);
   }
 
   TestPlatform platform;
@@ -94,7 +95,7 @@ TEST_CASE("wherever a reader stops in a look or a claim, messages may grow") {
     const uint64_t bytes = generation.data_bytes;
     const Refusal refusal = refusal_of_growth(*f.publisher, f.published, depth + 1);
     REQUIRE_MESSAGE(!refusal.code, refusal.text);
-    const bool is_kept = reading != no_record && reading != header_only;
+    const bool is_kept = reading != Reading::nothing && reading != f.header_only();
     kept += is_kept ? 1 : 0;
     CHECK((!is_kept || (generation.offset == offset && generation.data_bytes == bytes)));
     while (!reader.finished()) {  // its claimed record is still whole

@@ -30,14 +30,14 @@ std::vector<uint64_t> pop_all(BareQueue & queue) {
 TEST_CASE("pushed hints are popped in order, with all their fields") {
   BareQueue queue(8, false);
   queue.push({3, 5, 7});
-  queue.push({Hint::source_limit - 1, Hint::incarnation_mask, Hint::number_mask});
+  queue.push({Hint::publisher_mask, Hint::incarnation_mask, Hint::number_mask});
   const Hint first = queue.pop().value();
-  CHECK(first.source == 3);
-  CHECK(first.source_incarnation == 5);
+  CHECK(first.publisher == 3);
+  CHECK(first.incarnation == 5);
   CHECK(first.number == 7);
   const Hint second = queue.pop().value();
-  CHECK(second.source == Hint::source_limit - 1);
-  CHECK(second.source_incarnation == Hint::incarnation_mask);
+  CHECK(second.publisher == Hint::publisher_mask);
+  CHECK(second.incarnation == Hint::incarnation_mask);
   CHECK(second.number == Hint::number_mask);
   CHECK_FALSE(queue.pop());
 }
@@ -46,26 +46,9 @@ TEST_CASE("numbers and incarnations beyond their bits are cut, and touch nothing
   BareQueue queue(1, false);
   queue.push({2, Hint::incarnation_mask + 2, Hint::number_mask + 4});
   const Hint hint = queue.pop().value();
-  CHECK(hint.source == 2);
-  CHECK(hint.source_incarnation == 1);
+  CHECK(hint.publisher == 2);
+  CHECK(hint.incarnation == 1);
   CHECK(hint.number == 3);
-}
-
-TEST_CASE("the newest hints are seen without being popped, newest first") {
-  BareQueue queue(5, false);
-  const auto newest = [&queue](uint64_t most) {
-    std::vector<uint64_t> seen;
-    subscriber_queue::visit_newest(
-      queue.header(), most, [&seen](const Hint & hint) { seen.push_back(hint.number); });
-    return seen;
-  };
-  CHECK(newest(8).empty());
-  push_numbers(queue, 1, 22);  // beyond several laps of its eight slots
-  CHECK(newest(8) == std::vector<uint64_t>{22, 21, 20, 19, 18});
-  CHECK(newest(2) == std::vector<uint64_t>{22, 21});
-  queue.pop();
-  CHECK(newest(8) == std::vector<uint64_t>{22, 21, 20, 19});
-  CHECK(pop_all(queue) == std::vector<uint64_t>{19, 20, 21, 22});
 }
 
 TEST_CASE("capacity is the depth, even if that is not a power of two") {

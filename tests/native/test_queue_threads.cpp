@@ -32,12 +32,12 @@ struct Outcome {
 
 void look_at(const Hint & hint, std::vector<uint64_t> & last, Outcome & outcome) {
   ++outcome.popped;
-  if (hint.source >= last.size() || hint.source_incarnation != (hint.source & 63)) {
+  if (hint.publisher >= last.size() || hint.incarnation != (hint.publisher & 63)) {
     ++outcome.foreign;
     return;
   }
-  outcome.out_of_order += hint.number > last[hint.source] ? 0 : 1;
-  last[hint.source] = hint.number;
+  outcome.out_of_order += hint.number > last[hint.publisher] ? 0 : 1;
+  last[hint.publisher] = hint.number;
 }
 
 Outcome run(BareQueue & queue, const Load & load) {
@@ -121,7 +121,7 @@ TEST_CASE("a queue that is never popped holds the newest hints") {
   std::vector<uint64_t> newest(4, 0);
   while (const std::optional<Hint> hint = queue.pop()) {
     ++held;
-    newest[hint->source] = hint->number;
+    newest[hint->publisher] = hint->number;
   }
   CHECK(held == depth);
   CHECK(*std::max_element(newest.begin(), newest.end()) == many);

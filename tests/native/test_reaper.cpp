@@ -16,7 +16,6 @@
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 #include "transport/new_endpoint.hpp"
-#include "transport/queue/source_table.hpp"
 #include "transport/topic_dsm/topic_dsm_writer.hpp"
 
 using namespace manycore;
@@ -48,22 +47,13 @@ const Role interrupted_publisher("interrupted", [](Lines & test, const Arguments
   raise(SIGSTOP);
 });
 
-/// Closes a subscription of a dead process as far as its first source, whose reader entry is not
-/// removed yet; then waits to be killed.
+/// Closes the row of a dead process's subscription, and tells no publisher of it; then waits to be
+/// killed.
 const Role half_reaper("half_reaper", [](Lines & test, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
   const auto slot = static_cast<uint32_t>(std::stoul(arguments.at(1)));
   const Registry::Lock lock(registry);
-  EndpointEntry & entry = registry.endpoints()[slot];
-  entry.slot.state.store(SlotState::closing);
-  registry.unlink_endpoint(slot, Registry::Chain::live);
-  registry.header().closing.add(slot);
-  ++registry.header().closing_count;
-  auto & header = *registry.clusters().find<SubscriptionHeader>(entry.block);
-  visit_source_table(registry.clusters().at(1), header, [](SourceEntry & source, uint32_t) {
-    source.state.store(SourceState::revoked);
-    return true;
-  });
+  registry.endpoints()[slot].slot.state.store(SlotState::closed);
   test.say("half way");
   raise(SIGSTOP);
 });
@@ -121,7 +111,7 @@ TEST_CASE(
     Child reaper("half_reaper", {f.platform.name(), slot});
     reaper.expect("half way");
     reaper.kill();
-    f.process->create_publisher(on_topic("/y", keep_last(10)));  // sweeps
+    f.process->create_publisher(on_topic("/y", keep_last(10)));  // repairs
     CHECK(f.inspection.closing_endpoints() == 1);
     publish(*first, 1);
     publish(*second, 1);
@@ -320,7 +310,7 @@ TEST_CASE("a process taken for dead while it joined: what it created before its 
     endpoint =
       new_endpoint(registry, on_topic("/x", keep_last(1)), EndpointKind::publisher, process);
     registry.endpoints().publish(endpoint);
-    registry.link_endpoint(endpoint, Registry::Chain::live);
+    registry.link_endpoint(endpoint);
   }
   reaper.join();
   CHECK(f.inspection.live_processes() == 1);

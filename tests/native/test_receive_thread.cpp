@@ -20,6 +20,7 @@
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "transport/peers/peers.hpp"
 #include "waiting.hpp"
 
 using namespace manycore;
@@ -113,7 +114,7 @@ TEST_CASE("one eMCOS message per record and cluster, one hint per subscription t
   CHECK(f.far_cluster().notifications - notifications == 202);
 }
 
-TEST_CASE("a message for one subscription is pushed to the entry that it names, if that fits") {
+TEST_CASE("a message for one subscription is pushed to that one, if it is still there") {
   Fixture f;
   Node other(f.platform, 2);
   other.tell("subscription /x 30000");
@@ -124,28 +125,26 @@ TEST_CASE("a message for one subscription is pushed to the entry that it names, 
   const uint32_t slot = f.inspection.slot_of(f.publisher->gid());
   Registry & registry = f.inspection.registry();
   const EndpointEntry & publisher = registry.endpoints()[slot];
-  auto & dsm = *registry.clusters().at(1).find<TopicDsmHeader>(publisher.block.offset());
+  const Peer reader = peers_of(registry, publisher).back();
   EmcosMessage message{};
   message.kind = EmcosMessageKind::publish;
   message.topic_dsm = publisher.block;
   message.endpoint = slot;
   message.incarnation = publisher.slot.incarnation;
   message.number = 1;
-  message.target = dsm.readers[1].endpoint;
-  const auto hints_of = [&](uint32_t target_index) {
+  const auto hints_of = [&](uint32_t target, uint32_t incarnation) {
     const uint64_t messages = f.far_cluster().messages;
     const uint64_t notifications = f.far_cluster().notifications;
-    message.target_index = target_index;
+    message.target = target;
+    message.target_incarnation = incarnation;
     REQUIRE(registry.clusters().at(2).send(message));
     wait_until("the message", [&] { return f.far_cluster().messages > messages; });
     return f.far_cluster().notifications - notifications;
   };
-  for (const uint32_t elsewhere : {0u, 5u, 1000u, nothing}) {
-    CHECK(hints_of(elsewhere) == 1);
-  }
-  dsm.readers[0].endpoint.store(message.target);  // a walk would push to both
-  CHECK(hints_of(1) == 1);
-  CHECK(hints_of(5) == 2);
+  CHECK(hints_of(reader.slot, reader.incarnation) == 1);
+  CHECK(hints_of(reader.slot, reader.incarnation + 1) == 0);
+  CHECK(hints_of(slot, reader.incarnation) == 0);
+  CHECK(hints_of(nothing, 0) == 2);
 }
 
 TEST_CASE("inside a cluster no eMCOS message is sent") {

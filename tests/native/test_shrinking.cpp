@@ -7,7 +7,7 @@
 #include "messages.hpp"
 #include "platform_of_test.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
-#include "transport/queue/source_table.hpp"
+#include "transport/queue/reading.hpp"
 #include "waiting.hpp"
 
 using namespace manycore;
@@ -132,22 +132,18 @@ TEST_CASE("a generation that a reader may access is closed, but not freed") {
   publish(*publisher, 1);
   CHECK(take_all(*subscription) == numbers(1, 1));
   GenerationEntry & old = f.dsm_of(*publisher).generations[0];
-  SourceEntry * reader = nullptr;
-  visit_source_table(
-    f.inspection.registry().clusters().at(1), f.inspection.header_of(*subscription),
-    [&](SourceEntry & source, uint32_t) {
-      reader = &source;
-      return true;
-    });
+  std::atomic<uint64_t> & reading = f.inspection.header_of(*subscription).reading;
+  const uint32_t slot = f.inspection.slot_of(publisher->gid());
+  const uint32_t incarnation = f.inspection.registry().endpoints()[slot].slot.incarnation;
   // As of a reader that was stopped before it looked up its record.
-  reader->reading.store(1);
+  reading.store(Reading::of({slot, incarnation, 1}));
   publish(*publisher, 2, 100'000);  // grows
   for (uint64_t number = 3; number <= 10 && old.first.load() != 0; ++number) {
     publish(*publisher, number);
   }
   CHECK(old.first.load() == 0);
   CHECK(old.offset.load() != 0);
-  reader->reading.store(no_record);
+  reading.store(Reading::nothing);
   wait_until("the registry lock is to be had", [&] {
     publish(*publisher, 11);
     return old.offset.load() == 0;

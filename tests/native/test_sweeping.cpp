@@ -137,23 +137,6 @@ TEST_CASE("a topic DSM goes back to its cluster and the system whole") {
   CHECK(f.inspection.resident_bytes() <= resident);
 }
 
-TEST_CASE("a sweep closes what a live process left closing") {
-  Fixture f;
-  const Standstill no_other_sweeper(f.platform, 1);
-  const auto publishers = f.publishers(3);
-  const auto subscription = f.subscription(keep_last(1));
-  Registry & registry = f.inspection.registry();
-  {
-    const Registry::Lock lock(registry);
-    registry.endpoints()[slot_of(*subscription)].slot.state.store(SlotState::closing);
-    registry.header().needs_repair = 1;  // as left by a process that died with the lock
-  }
-  { const Registry::Lock repairs(registry); }
-  CHECK_FALSE(sweeping::sweep_all(registry));
-  CHECK(f.inspection.closing_endpoints() == 0);
-  CHECK(publishers.front()->matched().current == 0);
-}
-
 TEST_CASE("the reaper is woken for what the last reader could not free, with the registry locked") {
   Fixture f;
   const auto reader = f.subscription(keep_last(1));

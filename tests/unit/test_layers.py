@@ -116,7 +116,7 @@ def test_a_folder_is_seen_through_its_door(folder: str) -> None:
     [
         ("platform/futex.hpp", "transport/process.hpp"),
         ("transport/process.hpp", "rmw/init.h"),
-        ("transport/registry/registry.cpp", "transport/matching/matching.hpp"),
+        ("transport/registry/registry.cpp", "transport/matching/joining.hpp"),
         ("transport/layout/endpoint.hpp", "transport/process.hpp"),
         ("rmw/common/error.hpp", "rmw/topics/publisher.hpp"),
         ("python/transport/module.cpp", "rmw/common/names.hpp"),

@@ -15,6 +15,7 @@
 #include "python/transport/text.hpp"
 #include "python/transport/type_hash.hpp"
 #include "python/transport/words.hpp"
+#include "transport/peers/graph_matches.hpp"
 
 namespace nb = nanobind;
 
@@ -100,7 +101,7 @@ void bind_endpoint_info(nb::module_ & module) {
     .def_ro("cluster", &EndpointRow::cluster)
     .def_ro("process", &EndpointRow::process)
     .def_ro("qos", &EndpointRow::qos)
-    .def_prop_ro("matched", [](const EndpointRow & row) { return row.matched.current; })
+    .def_prop_ro("matched", [](const EndpointRow & row) { return row.matched; })
     .def_ro("counters", &EndpointRow::counters)
     .def_prop_ro("transfer", word<EndpointRow>(&EndpointRow::transfer));
 }
@@ -113,14 +114,15 @@ std::vector<EndpointRow> rows_of(
   for (const NodeInfo & node : nodes) {
     by_handle.emplace(node.handle, &node);
   }
+  const std::vector<uint64_t> matches = count_matches(endpoints);
   std::vector<EndpointRow> rows;
-  for (EndpointInfo & endpoint : endpoints) {
-    const std::optional<Activity> activity = graph.activity_of(endpoint.gid);
+  for (size_t i = 0; i < endpoints.size(); ++i) {
+    const std::optional<Activity> activity = graph.activity_of(endpoints[i].gid);
     if (!activity) {
       continue;
     }
-    EndpointRow & row =
-      rows.emplace_back(EndpointRow{std::move(endpoint), activity->counters, "", ""});
+    EndpointRow & row = rows.emplace_back(
+      EndpointRow{std::move(endpoints[i]), activity->counters, "", "", matches[i]});
     const auto node = by_handle.find(row.node);
     if (node != by_handle.end()) {
       row.node_name = node->second->name;

@@ -31,6 +31,7 @@ struct EndpointRow : EndpointInfo {
   CounterValues counters;
   std::string node_name;
   std::string node_namespace;
+  uint64_t matched = 0;  ///< endpoints of the snapshot with which it is matched
 };
 
 /// Adds to each endpoint its counters, and name and namespace of its node; empty if the node is

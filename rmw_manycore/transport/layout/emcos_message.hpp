@@ -28,7 +28,7 @@ struct EmcosMessage {
   uint32_t incarnation;  ///< publish: incarnation of that slot
   uint64_t number;       ///< publish: number of the record
   uint32_t target;       ///< publish: slot of the only subscription to notify, or `nothing` for all
-  uint32_t target_index;  ///< publish with a target: likely index of its entry in the reader table
+  uint32_t target_incarnation;  ///< publish with a target: incarnation of that slot
   uint64_t padding[3];
 };
 static_assert(sizeof(EmcosMessage) == 64 && sizeof(EmcosMessage) <= PIPE_BUF);

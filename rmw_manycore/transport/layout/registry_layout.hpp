@@ -22,16 +22,14 @@ constexpr uint32_t nothing = UINT32_MAX;  ///< no slot
 
 constexpr size_t name_bytes = 256;  ///< ROS names are at most 255 characters
 
-/// free -> live -> closing -> closed -> freeing -> unreachable -> free; only endpoints pass through
-/// the states from closing on (see docs/design/freeing.md).
+/// free -> live -> closed -> freeing -> unreachable -> free; only endpoints pass through the states
+/// from closed on (see docs/design/freeing.md).
 ///
-/// An endpoint is `closing` while its matches are being undone, by its own process or by the
-/// reaper of that process. If that process or reaper dies midway, the reaper continues; while the
-/// process lives, the next sweep does. A `closed` endpoint may be freed by any process that holds
-/// the registry lock. A publisher then becomes `freeing`: from then on no process may follow a
-/// reference to its memory. An endpoint becomes `unreachable` once no process can still be
+/// Any process that holds the registry lock may free a `closed` endpoint. A publisher stays closed
+/// while it owes a reader messages, and then becomes `freeing`: from then on no process may follow
+/// a reference to its memory. An endpoint becomes `unreachable` once no process can still be
 /// following one. Its memory is then freed piece by piece.
-enum class SlotState : uint32_t { free, live, closing, closed, freeing, unreachable };
+enum class SlotState : uint32_t { free, live, closed, freeing, unreachable };
 
 /// True while an endpoint's memory may be freed or is being freed.
 constexpr bool is_closed(SlotState state) {
@@ -39,9 +37,14 @@ constexpr bool is_closed(SlotState state) {
          state == SlotState::unreachable;
 }
 
-/// True while references to an endpoint's memory may be followed.
+/// True while references to a publisher's memory may be followed.
 constexpr bool has_memory(SlotState state) {
-  return state == SlotState::live || state == SlotState::closing || state == SlotState::closed;
+  return state == SlotState::live || state == SlotState::closed;
+}
+
+/// True while an endpoint is in the chain of its topic's bucket.
+constexpr bool is_linked(SlotState state) {
+  return has_memory(state) || state == SlotState::freeing;
 }
 
 /// First member of each table entry.
@@ -113,26 +116,18 @@ struct EndpointEntry {
   std::atomic<uint32_t> process;  ///< slot
   uint32_t node;
   uint32_t cluster;
-  /// Next older endpoint in a chain of the topic's bucket (derived): that of the live endpoints, or
-  /// of the orphans.
-  std::atomic<uint32_t> next_of_topic;
-  uint32_t previous_of_topic;  ///< (derived)
-  uint32_t order;              ///< larger the later it was linked into its chain; wraps around
+  std::atomic<uint32_t> next_of_topic;  ///< next older endpoint of the topic's bucket (derived)
+  uint32_t previous_of_topic;           ///< (derived)
+  uint32_t order;  ///< larger the later it was linked into its chain; wraps around
   uint64_t topic_hash;
   SegmentRef block;  ///< publisher: topic DSM header; subscription: subscription header
   Gid gid;
   Qos qos;
   uint8_t type_hash[32];
-  std::atomic<uint64_t> matched_total;
-  std::atomic<uint64_t> matched_current;
-  std::atomic<uint64_t> incompatible_total;
-  std::atomic<uint32_t> incompatible_policy;
   uint32_t topic_dsm_size;  ///< publisher: fixed size from the topic table in bytes; 0 = grows
-  std::atomic<uint64_t> incompatible_types;
+  uint32_t closed_order;    ///< larger the later it was closed; wraps around
   /// Publisher: last assertion of manual liveliness, CLOCK_MONOTONIC; 0 = never.
   std::atomic<int64_t> asserted_ns;
-  /// Subscription: publishers that died and were not replaced yet.
-  std::atomic<uint32_t> dead_publishers;
   Transfer transfer;  ///< of the topic, from the topic table
   /// Its process was killed. Stored before the slot ceases to be live.
   std::atomic<uint8_t> died;
@@ -142,8 +137,8 @@ struct EndpointEntry {
   char type[name_bytes];
 };
 static_assert(
-  sizeof(EndpointEntry) == 768 && offsetof(EndpointEntry, topic_hash) == 40 &&
-  offsetof(EndpointEntry, counters) == 200);
+  sizeof(EndpointEntry) == 728 && offsetof(EndpointEntry, topic_hash) == 40 &&
+  offsetof(EndpointEntry, counters) == 160);
 
 /// One line of the topic table (ROS-lite2 Fig. 7).
 struct TopicEntry {
@@ -232,9 +227,8 @@ struct RegistryHeader {
   ClosingEndpoints closing;           ///< endpoints in a state from closing on (derived)
   std::atomic<uint64_t> death_count;  ///< incremented after the entry in `deaths` is written
   Death deaths[kept_deaths];  ///< ring; the next death goes to index death_count mod kept_deaths
-  TopicBucket topic_buckets[topic_bucket_count];             ///< live endpoints
-  std::atomic<uint32_t> orphan_buckets[topic_bucket_count];  ///< publishers that are gone
-  Hand hands[lifeline_count];                                ///< by line
+  TopicBucket topic_buckets[topic_bucket_count];
+  Hand hands[lifeline_count];  ///< by line
   LockSeat seats[lock_seat_count];
 };
 

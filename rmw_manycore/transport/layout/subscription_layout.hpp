@@ -4,36 +4,10 @@
 #include <algorithm>
 
 #include "transport/layout/deadline_clock.hpp"
-#include "transport/layout/entry_blocks.hpp"
 #include "transport/layout/segment_layout.hpp"
 #include "transport/layout/wake_words.hpp"
 
 namespace manycore {
-
-/// free -> joining -> active -> revoked -> free. A claim is allowed in `active` only; the source is
-/// `joining` until the publisher can find the reader.
-enum class SourceState : uint32_t { free, joining, active, revoked };
-
-/// A topic DSM as seen from one subscription. One cache line, which the subscriber writes for each
-/// message it takes.
-struct alignas(64) SourceEntry {
-  std::atomic<SourceState> state;
-  std::atomic<uint32_t> incarnation;  ///< incremented each time the entry is taken
-  std::atomic<uint64_t> topic_dsm;    ///< SegmentRef of its header
-  std::atomic<uint32_t> topic_dsm_endpoint;
-  std::atomic<uint32_t> topic_dsm_incarnation;
-  std::atomic<uint64_t> taken;  ///< the reader is done with all records up to this number
-  /// What is being read: a record (the claim), whole_generation, header_only, or no_record.
-  std::atomic<uint64_t> reading;
-  std::atomic<uint64_t> reader;  ///< SegmentRef of the ReaderEntry
-  /// Publication sequence number up to which each message is accounted for: published before the
-  /// match, taken, expired, or counted as lost. Written by the subscriber under its claim, and by
-  /// the sweeper once the source is revoked and nothing is claimed. Of a closed subscription: the
-  /// phase of the publisher when its reader was removed.
-  std::atomic<uint64_t> accounted;
-  std::atomic<uint64_t> displaced;  ///< newest displaced hint, encoded by Displaced; 0 = none
-};
-static_assert(sizeof(SourceEntry) == 64);
 
 /// Number of hints that pushers displaced from a queue.
 struct DisplacedCount {
@@ -52,8 +26,7 @@ struct SubscriptionHeader {
   uint8_t keep_all;
   uint8_t has_deadline;
   uint8_t reserved[2];
-  std::atomic<uint32_t> resync;             ///< hints may be missing: scan all sources
-  std::atomic<uint64_t> source_generation;  ///< incremented whenever the source table changes
+  std::atomic<uint32_t> resync;  ///< hints may be missing: scan all sources
   /// `lost` minus the displaced hints when both were last known exactly; see lost_so_far().
   std::atomic<uint64_t> lost_beside_displaced;
 
@@ -62,13 +35,15 @@ struct SubscriptionHeader {
   /// are displacements, which therefore need no counter of their own.
   std::atomic<uint64_t> pops_begun;
   std::atomic<uint64_t> pops_done;
+  /// The record that the subscription is looking at, as encoded by Reading; 0 = none. It counts
+  /// while the subscription's row is live.
+  std::atomic<uint64_t> reading;
   alignas(64) std::atomic<uint64_t> tail;
 
   /// Clock of the requested deadline, touched by each arrival; unused without a deadline.
   alignas(64) DeadlineClock deadline;
   int64_t deadline_ns;
-  Watchers watchers;          ///< threads of its process that wait for arrivals
-  uint32_t free_source_from;  ///< no source below this index is free; under the registry lock
+  Watchers watchers;  ///< threads of its process that wait for arrivals
 
   /// Records an arrival. Returns true for the first one, before which no deadline was due.
   [[nodiscard]] bool note_arrival() noexcept {
@@ -95,14 +70,12 @@ struct SubscriptionHeader {
     return {moves - std::min(moves, begun), false};
   }
 
-  alignas(64) EntryBlocks sources;
-
   std::atomic<uint64_t> * slots() noexcept {
     return reinterpret_cast<std::atomic<uint64_t> *>(this + 1);
   }
 };
-static_assert(sizeof(SubscriptionHeader) == 384);
-static_assert(offsetof(SubscriptionHeader, lost_beside_displaced) == 40);
+static_assert(sizeof(SubscriptionHeader) == 256);
+static_assert(offsetof(SubscriptionHeader, lost_beside_displaced) == 32);
 
 /// Size of a subscription's head with a queue of so many slots.
 constexpr uint64_t subscription_block_bytes(uint32_t slot_count_log2) noexcept {

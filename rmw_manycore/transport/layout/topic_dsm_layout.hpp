@@ -4,17 +4,13 @@
 #include "platform/futex.hpp"
 #include "transport/layout/endpoint.hpp"
 #include "transport/layout/entry_blocks.hpp"
+#include "transport/layout/seat.hpp"
 #include "transport/layout/segment_layout.hpp"
 
 namespace manycore {
 
 constexpr uint32_t max_generations = 8;
 constexpr uint64_t no_record = 0;  ///< record numbers start at 1
-/// In SourceEntry::reading: with this bit, the number of a generation's first record keeps the
-/// generation, but no record.
-constexpr uint64_t whole_generation = uint64_t{1} << 63;
-/// Value of SourceEntry::reading that keeps the header of the topic DSM, but no generation.
-constexpr uint64_t header_only = UINT64_MAX;
 
 /// One record of a topic DSM. Written by the publisher; a reader accesses it only under its claim.
 struct alignas(64) RecordDescriptor {
@@ -23,7 +19,7 @@ struct alignas(64) RecordDescriptor {
   uint32_t size_bytes;
   uint32_t reserved;
   std::atomic<int64_t> source_timestamp_ns;  ///< atomic: sweepers read it without a claim
-  uint64_t publication_sequence_number;
+  uint64_t publication_sequence_number;      ///< of replies: among those to the same client
   Correlation correlation;
 };
 static_assert(sizeof(RecordDescriptor) == 64);
@@ -55,34 +51,23 @@ struct GenerationEntry {
 };
 static_assert(sizeof(GenerationEntry) == 32);
 
-/// One reader of a topic DSM, as the publisher and the receive threads see it. All fields are
-/// atomic because they are read without the registry lock.
-struct ReaderEntry {
-  std::atomic<uint32_t> active;
-  std::atomic<uint32_t> endpoint;      ///< slot of the subscription
-  std::atomic<uint64_t> subscription;  ///< SegmentRef of its header
-  std::atomic<uint64_t> source;        ///< SegmentRef of its source entry for this topic DSM
-  std::atomic<uint32_t> source_index;
-  std::atomic<uint32_t> source_incarnation;
-};
-static_assert(sizeof(ReaderEntry) == 32);
-
-constexpr uint32_t readers_in_header = 14;
+constexpr uint32_t seats_in_header = 15;
 
 /// Head of a topic DSM: one writer, many readers.
 struct TopicDsmHeader {
   std::atomic<uint32_t> magic;
   std::atomic<uint32_t> endpoint;     ///< slot of the publisher
   std::atomic<uint32_t> incarnation;  ///< of that slot
-  std::atomic<uint32_t> orphan;       ///< 1 = the publisher is gone; freed once it is unread
+  /// 1 = the publisher is closed, and readers that are owed messages have been asked to look.
+  std::atomic<uint32_t> orphan;
   int64_t lifespan_ns;
   uint32_t depth;  ///< of the publisher's KEEP_LAST history
   uint8_t keep_all;
   uint8_t transient_local;
-  uint8_t role;               ///< EndpointRole
-  uint8_t transfer;           ///< Transfer; unless dsm, a LandingTable follows this header
-  uint32_t process;           ///< slot of the publisher's process
-  uint32_t free_reader_from;  ///< no reader below this index is free; under the registry lock
+  uint8_t role;      ///< EndpointRole
+  uint8_t transfer;  ///< Transfer; unless dsm, a LandingTable follows this header
+  uint32_t process;  ///< slot of the publisher's process
+  uint32_t reserved;
   Gid gid;
 
   /// Written by the publisher for each message, read by all readers.
@@ -91,17 +76,15 @@ struct TopicDsmHeader {
   /// Record numbers without a message, stored before and after `last`; see last_published().
   std::atomic<uint64_t> skipped_before;
   std::atomic<uint64_t> skipped_after;
-  /// Incremented by matchers whenever the reader table changes.
-  alignas(64) std::atomic<uint64_t> match_generation;
   /// RELIABLE + KEEP_ALL: incremented by readers at each release while `writer_waits` is set.
-  FutexWord progress;
+  alignas(64) FutexWord progress;
   std::atomic<uint32_t> writer_waits;
 
   alignas(64) GenerationEntry generations[max_generations];
-  ReaderEntry readers[readers_in_header];
-  EntryBlocks further_readers;
+  EntryBlocks further_seats;
+  Seat seats[seats_in_header];
 };
-static_assert(sizeof(TopicDsmHeader) == 1024 && offsetof(TopicDsmHeader, gid) == 40);
+static_assert(sizeof(TopicDsmHeader) == 1536 && offsetof(TopicDsmHeader, gid) == 40);
 static_assert(std::is_standard_layout_v<TopicDsmHeader>);
 
 }  // namespace manycore

@@ -1,137 +1,79 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/matching/closing.hpp"
 
-#include "transport/matching/detaching.hpp"
+#include "transport/layout/subscription_layout.hpp"
 #include "transport/matching/orphans.hpp"
-#include "transport/qos/liveliness.hpp"
-#include "transport/queue/source_table.hpp"
+#include "transport/peers/peers.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
+#include "transport/registry/topic_rows.hpp"
+#include "transport/topic_dsm/waiting_publisher.hpp"
 #include "transport/transfer/transfer.hpp"
 
 namespace manycore::closing {
 namespace {
 
-void count_unmatched(Registry & registry, EndpointEntry & entry) {
-  if (entry.matched_current.load() != 0) {
-    entry.matched_current.fetch_sub(1);
-  }
-  notify_event_watchers(registry, entry.process);
-}
-
-/// A source that is `revoked` is not counted any more: if this process dies midway, the match is
-/// undone once.
-void undo_match(
-  Registry & registry, SourceEntry & source, uint32_t receiver, std::vector<uint32_t> & unread) {
-  const uint32_t publisher = source.topic_dsm_endpoint.load();
-  const TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
-  if (dsm != nullptr && dsm->orphan.load() != 0) {
-    unread.push_back(publisher);
-  } else if (dsm != nullptr && source.state.load() == SourceState::active) {
-    count_unmatched(registry, registry.endpoints()[publisher]);
-  }
-  source.state.store(SourceState::revoked, std::memory_order_seq_cst);
-  detach_reader(registry, source, receiver);
-  if (dsm != nullptr) {
-    // Any later value shows that the publisher has looked at its reader table since.
-    source.accounted.store(dsm->phase.load(std::memory_order_seq_cst));
-  }
-}
-
-void close_subscription(
-  Registry & registry, const EndpointEntry & entry, std::vector<uint32_t> & unread) {
-  Cluster * const cluster = registry.map_cluster(entry.block.cluster());
-  auto * const header = registry.map<SubscriptionHeader>(entry.block);
-  if (cluster == nullptr || header == nullptr) {
-    return;
-  }
-  visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
-    if (source.state.load() != SourceState::free) {
-      undo_match(registry, source, entry.cluster, unread);
-    }
-    return false;
-  });
-}
-
-/// Hints of the last records may not have been pushed (`died`) or may have been displaced. A reader
-/// with undelivered records is set to resync, so that the topic DSM does not wait for it forever.
-void notify_of_end(
-  Registry & registry, const EndpointEntry & publisher, const orphans::Reader & reader, bool died,
-  bool has_untaken) {
-  EndpointEntry & subscription = registry.endpoints()[reader.endpoint_slot];
-  if (died) {
-    note_death(publisher, subscription);
-  }
-  count_unmatched(registry, subscription);
-  if (has_untaken) {
-    reader.subscription.resync.store(1, std::memory_order_seq_cst);
-    notify_watchers(registry, reader.subscription);
-  }
-}
-
-/// The publisher counts as matched until it is an orphan: if this process dies midway, a repair
-/// counts the matches of its readers anew, and they are notified once more.
-void close_publisher(
-  Registry & registry, const EndpointEntry & entry, bool died, std::vector<uint32_t> & unread) {
+void begin_publisher(Registry & registry, EndpointEntry & entry, bool died) {
   Cluster * const cluster = registry.map_cluster(entry.block.cluster());
   auto * const dsm = registry.map<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
-    return;
+    return;  // damaged
   }
   transfer::end(registry.clusters(), *cluster, *dsm);
   if (died) {
     dsm->phase.store(0, std::memory_order_seq_cst);  // a dead process follows no references
   }
-  if (dsm->orphan.load() != 0) {
-    return;
-  }
-  const orphans::Untaken untaken(*cluster, *dsm);
-  bool is_read = false;
-  std::vector<orphans::Reader> readers;  // all are mapped before anything is changed
-  orphans::for_each_reader(
-    registry, *cluster, *dsm,
-    [&](const orphans::Reader & reader, ReaderEntry &) { readers.push_back(reader); });
-  for (const orphans::Reader & reader : readers) {
-    if (registry.endpoints().is_live(reader.endpoint_slot)) {
-      const bool has_untaken = untaken.of(reader) != 0;
-      notify_of_end(registry, entry, reader, died, has_untaken);
-      is_read = is_read || has_untaken;
-    }
-  }
-  dsm->orphan.store(1, std::memory_order_seq_cst);
-  if (is_read) {
-    orphans::cut(registry, entry.topic, unread);
-  }
+  orphans::give_seats_to_readers_of_history(registry, *cluster, entry, *dsm);
 }
 
-/// Publishers that are gone are found by topic.
-void leave_chain(Registry & registry, uint32_t endpoint) {
+/// Publishers that wait for a subscription (KEEP_ALL) look again: its row is closed.
+void notify_waiting_publishers(Registry & registry, const EndpointEntry & entry) {
+  for_each_row(
+    registry, entry.topic, EndpointKind::publisher, [&](EndpointEntry & other, uint32_t) {
+      TopicDsmHeader * const dsm =
+        is_live(other) ? registry.clusters().find<TopicDsmHeader>(other.block) : nullptr;
+      if (dsm != nullptr) {
+        notify_waiting_publisher(*dsm);
+      }
+    });
+}
+
+/// Stored in this order: how an endpoint ended is known once its row is not live.
+void close_row(Registry & registry, uint32_t endpoint, bool died) {
   EndpointEntry & entry = registry.endpoints()[endpoint];
-  registry.unlink_endpoint(endpoint, Registry::Chain::live);
-  if (entry.kind == EndpointKind::publisher) {
-    entry.order = ++registry.header().last_order;
-    registry.link_endpoint(endpoint, Registry::Chain::orphans);
-  }
+  RegistryHeader & header = registry.header();
+  entry.died.store(died ? 1 : 0);
+  entry.closed_order = ++header.last_order;
+  entry.slot.state.store(SlotState::closed, std::memory_order_seq_cst);
+  registry.raise_changes(entry.topic_hash);
+  header.closing.add(endpoint);
+  ++header.closing_count;
 }
 
 }  // namespace
 
-void close(Registry & registry, uint32_t endpoint, bool died, std::vector<uint32_t> & unread) {
+void close(Registry & registry, uint32_t endpoint, bool died, std::vector<uint32_t> & unwanted) {
   EndpointEntry & entry = registry.endpoints()[endpoint];
-  if (entry.slot.state.load() == SlotState::live) {
-    entry.died.store(died ? 1 : 0);
-    entry.slot.state.store(SlotState::closing);
-    registry.raise_changes(entry.topic_hash);
-    leave_chain(registry, endpoint);
-    registry.header().closing.add(endpoint);
-    ++registry.header().closing_count;
+  const bool is_publisher = entry.kind == EndpointKind::publisher;
+  if (!is_live(entry)) {
+    return;
   }
-  if (entry.kind == EndpointKind::publisher) {
-    close_publisher(registry, entry, died, unread);
-  } else {
-    close_subscription(registry, entry, unread);
+  registry.map_cluster(entry.block.cluster());
+  if (is_publisher) {
+    begin_publisher(registry, entry, died);
   }
-  if (entry.slot.state.load() == SlotState::closing) {
-    entry.slot.state.store(SlotState::closed);
+  const std::vector<Peer> peers = peers_of(registry, entry);
+  close_row(registry, endpoint, died);
+  for (const Peer & peer : peers) {
+    notify_event_watchers(registry, peer.process);
+  }
+  try {
+    if (!is_publisher) {
+      notify_waiting_publishers(registry, entry);
+    }
+    orphans::cut(registry, entry.topic, unwanted);
+  } catch (const ClusterUnmappable &) {
+    // The sweep of this endpoint finds it `in_use`, and the reaper, which has descriptors of its
+    // own, goes on.
   }
 }
 

@@ -1,14 +1,13 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/matching/freeing.hpp"
 
-#include <algorithm>
-#include <optional>
-
+#include "transport/layout/subscription_layout.hpp"
 #include "transport/matching/orphans.hpp"
-#include "transport/queue/source_table.hpp"
-#include "transport/registry/endpoint_blocks.hpp"
+#include "transport/peers/endpoint_terms.hpp"
+#include "transport/registry/topic_rows.hpp"
 #include "transport/topic_dsm/generation.hpp"
-#include "transport/topic_dsm/reader_table.hpp"
+#include "transport/topic_dsm/seat_table.hpp"
+#include "transport/topic_dsm/waiting_publisher.hpp"
 #include "transport/transfer/transfer.hpp"
 
 namespace manycore::freeing {
@@ -43,56 +42,24 @@ bool receive_threads_are_out(Registry & registry) {
   return true;
 }
 
-/// Revokes the source of a reader that has taken all of the topic DSM that it can.
-Progress revoke(
-  Registry & registry, const orphans::Untaken & untaken, const orphans::Reader & reader,
-  ReaderEntry & entry) {
-  SourceEntry & source = reader.source;
-  if (source.state.load() == SourceState::active) {
-    if (
-      untaken.of(reader) != 0 && transfer::can_arrive(
-                                   registry, reader.cluster, reader.dsm, reader.subscription,
-                                   reader.endpoint.cluster, source)) {
-      return Progress::kept;
-    }
-    // Dekker with the claim: the reader stores `reading` before it loads the state.
-    source.state.store(SourceState::revoked, std::memory_order_seq_cst);
-  }
-  if (source.reading.load(std::memory_order_seq_cst) != no_record) {
-    return Progress::in_use;
-  }
-  orphans::count_undelivered(registry, reader);
-  // Remove the reader before the source entry can be reused: if this process dies in between, the
-  // next sweep must not mistake a new match for this one.
-  free_reader_entry(reader.cluster, reader.dsm, entry);
-  SubscriptionHeader & subscription = reader.subscription;
-  subscription.free_source_from = std::min(subscription.free_source_from, reader.source_index);
-  source.state.store(SourceState::free, std::memory_order_release);
-  subscription.source_generation.fetch_add(1, std::memory_order_release);
-  return Progress::none_left;
-}
-
-Progress revoke_all(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {
-  const orphans::Untaken untaken(cluster, dsm);
-  Progress progress = Progress::none_left;
-  orphans::for_each_reader(
-    registry, cluster, dsm, [&](const orphans::Reader & reader, ReaderEntry & entry) {
-      progress = std::max(progress, revoke(registry, untaken, reader, entry));
+/// True if no publisher still pushes to the closed subscription: each one that is live was seen
+/// outside its phase. A publisher whose row is closed follows nothing.
+bool publishers_are_out(Registry & registry, const EndpointEntry & entry, uint32_t slot) {
+  const uint64_t subscription = endpoint_word(slot, entry.slot.incarnation.load());
+  bool are_out = true;
+  for_each_row(
+    registry, entry.topic, EndpointKind::publisher, [&](EndpointEntry & other, uint32_t publisher) {
+      TopicDsmHeader * const dsm =
+        is_live(other) ? registry.map<TopicDsmHeader>(other.block) : nullptr;
+      if (dsm == nullptr) {
+        return;
+      }
+      notify_waiting_publisher(*dsm);  // which the closing process may not have done
+      const uint64_t phase = dsm->phase.load(std::memory_order_seq_cst);
+      const uint64_t word = endpoint_word(publisher, other.slot.incarnation.load());
+      are_out = registry.phases_seen().is_out(subscription, word, phase) && are_out;
     });
-  return progress;
-}
-
-/// Takes up blocks of a table, last block first. False once the hand is full.
-template<typename Entry>
-bool take_up_table(const Cluster & cluster, const EntryTable<Entry> & table, BlockInHand & hand) {
-  while (const auto last = table.last()) {
-    hand.take_up(SegmentRef::make(cluster.id(), last->offset), last->bytes);
-    table.drop_last();
-    if (!hand.is_empty()) {
-      return false;
-    }
-  }
-  return true;
+  return are_out;
 }
 
 bool take_up_generations(const Cluster & cluster, TopicDsmHeader & dsm, BlockInHand & hand) {
@@ -107,6 +74,71 @@ bool take_up_generations(const Cluster & cluster, TopicDsmHeader & dsm, BlockInH
   return true;
 }
 
+/// Last block first. False once the hand is full.
+bool take_up_seats(const Cluster & cluster, TopicDsmHeader & dsm, BlockInHand & hand) {
+  const EntryTable<Seat> table = further_seats(cluster, dsm);
+  while (const auto last = table.last()) {
+    hand.take_up(SegmentRef::make(cluster.id(), last->offset), last->bytes);
+    table.drop_last();
+    if (!hand.is_empty()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// True if a live subscription of that cluster reads the publisher.
+bool has_reader(Registry & registry, const EndpointEntry & publisher, uint32_t receiver) {
+  const EndpointTerms terms(publisher);
+  bool is_any = false;
+  for_each_row(
+    registry, publisher.topic, EndpointKind::subscription, [&](EndpointEntry & entry, uint32_t) {
+      is_any = is_any || (is_live(entry) && entry.cluster == receiver &&
+                          fit_of(terms, entry).kind == Fit::Kind::matched);
+    });
+  return is_any;
+}
+
+/// Calls `visit(publisher, its cluster, its topic DSM)` for each publisher of a closed
+/// subscription's topic whose records are transferred.
+template<typename Visit>
+void for_each_transferred(Registry & registry, const EndpointEntry & entry, Visit visit) {
+  if (entry.transfer == Transfer::dsm) {
+    return;
+  }
+  for_each_row(
+    registry, entry.topic, EndpointKind::publisher, [&](EndpointEntry & publisher, uint32_t) {
+      const Cluster * const cluster = registry.map_cluster(publisher.block.cluster());
+      auto * const dsm = registry.map<TopicDsmHeader>(publisher.block);
+      if (cluster != nullptr && dsm != nullptr && has_memory(publisher.slot.state.load())) {
+        visit(publisher, *cluster, *dsm);
+      }
+    });
+}
+
+/// From here on no thread finds the room that publishers have in the cluster of a closed
+/// subscription which was the last one there.
+void retire_room(Registry & registry, const EndpointEntry & entry) {
+  for_each_transferred(
+    registry, entry, [&](EndpointEntry & publisher, const Cluster & cluster, TopicDsmHeader & dsm) {
+      if (!has_reader(registry, publisher, entry.cluster)) {
+        transfer::retire(cluster, dsm, entry.cluster);
+      }
+    });
+}
+
+/// Once movers are out of their phases. False if a publisher is not, or once the hand is full.
+bool take_up_retired_room(
+  Registry & registry, const Cluster & receiver, const EndpointEntry & entry, BlockInHand & hand) {
+  bool is_done = true;
+  for_each_transferred(
+    registry, entry, [&](EndpointEntry &, const Cluster & cluster, TopicDsmHeader & dsm) {
+      is_done =
+        is_done && transfer::take_up_retired(cluster, dsm, receiver, hand) && hand.is_empty();
+    });
+  return is_done;
+}
+
 /// The last block, so no repairer follows the reference in the entry once the block is freed.
 Progress take_up_head(EndpointEntry & entry, uint64_t bytes, BlockInHand & hand) {
   hand.take_up(entry.block, bytes);
@@ -114,56 +146,35 @@ Progress take_up_head(EndpointEntry & entry, uint64_t bytes, BlockInHand & hand)
   return Progress::none_left;
 }
 
-/// True if the publisher of `source` holds no references into the subscription: it is not in the
-/// phase in which it was when its reader entry was removed. The topic DSM may be freed since, so
-/// the publisher's slot is checked first, before the header is read.
-bool publisher_is_out(Registry & registry, const SourceEntry & source) {
-  const TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
-  if (dsm == nullptr || dsm->magic.load() != topic_dsm_magic) {
-    return true;
+/// Makes the memory of a closed publisher unreachable, once no subscription wants or reads it.
+Progress detach_publisher(
+  Registry & registry, uint32_t endpoint, const Cluster & cluster, TopicDsmHeader & dsm,
+  std::vector<uint32_t> & unwanted) {
+  EndpointEntry & entry = registry.endpoints()[endpoint];
+  if (entry.slot.state.load() == SlotState::closed) {
+    orphans::cut(registry, entry.topic, unwanted);
+    if (entry.slot.state.load() == SlotState::closed) {
+      return Progress::kept;
+    }
   }
-  const uint64_t phase = dsm->phase.load(std::memory_order_seq_cst);
-  return phase % 2 == 0 || phase != source.accounted.load();
-}
-
-/// Takes up the room for a publisher's records in the subscription's cluster if the subscription
-/// was the last to read them there.
-void take_up_room_of(
-  Registry & registry, const Cluster & cluster, const SourceEntry & source, BlockInHand & hand) {
-  TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
-  const Cluster * const publisher =
-    dsm == nullptr ? nullptr : registry.map_cluster(SegmentRef{source.topic_dsm.load()}.cluster());
-  if (publisher != nullptr) {
-    transfer::take_up_retired(*publisher, *dsm, cluster, hand);
+  // Dekker with a look: the state was stored seq_cst, and the subscription stores `reading` before
+  // it loads the state.
+  const bool has_movers = dsm.transfer != static_cast<uint8_t>(Transfer::dsm);
+  if (
+    orphans::is_being_read(registry, entry, endpoint) ||
+    (has_movers && !receive_threads_are_out(registry))) {
+    return Progress::in_use;
   }
-}
-
-/// A publisher seen outside its phase once stays outside this subscription, which it cannot find
-/// any more: its source is freed, so it is not looked at again.
-Progress see_publishers_out(
-  Registry & registry, Cluster & cluster, SubscriptionHeader & header, BlockInHand & hand) {
-  Progress progress = Progress::none_left;
-  visit_source_table(cluster, header, [&](SourceEntry & source, uint32_t) {
-    if (source.state.load() == SourceState::free) {
-      return false;
-    }
-    if (!publisher_is_out(registry, source)) {
-      progress = Progress::in_use;
-      return false;
-    }
-    take_up_room_of(registry, cluster, source, hand);
-    source.state.store(SourceState::free);
-    if (!hand.is_empty()) {
-      progress = Progress::some_left;
-    }
-    return progress == Progress::some_left;
-  });
-  return progress;
+  orphans::count_undelivered(registry, cluster, dsm);
+  registry.unlink_endpoint(endpoint);
+  entry.slot.state.store(SlotState::unreachable);
+  return Progress::none_left;
 }
 
 }  // namespace
 
-Progress free_publisher(Registry & registry, uint32_t endpoint, BlockInHand & hand) {
+Progress free_publisher(
+  Registry & registry, uint32_t endpoint, BlockInHand & hand, std::vector<uint32_t> & unwanted) {
   EndpointEntry & entry = registry.endpoints()[endpoint];
   Cluster * const cluster = registry.map_cluster(entry.block.cluster());
   auto * const dsm = registry.map<TopicDsmHeader>(entry.block);
@@ -171,21 +182,14 @@ Progress free_publisher(Registry & registry, uint32_t endpoint, BlockInHand & ha
     return Progress::none_left;
   }
   if (entry.slot.state.load() != SlotState::unreachable) {
-    if (const Progress progress = revoke_all(registry, *cluster, *dsm);
+    if (const Progress progress = detach_publisher(registry, endpoint, *cluster, *dsm, unwanted);
         progress != Progress::none_left) {
       return progress;
     }
-    // Dekker with the receive threads: each stores its phase before it looks at the state.
-    entry.slot.state.store(SlotState::freeing, std::memory_order_seq_cst);
-    if (!receive_threads_are_out(registry)) {
-      return Progress::in_use;
-    }
-    registry.unlink_endpoint(endpoint, Registry::Chain::orphans);
-    entry.slot.state.store(SlotState::unreachable);
   }
   const bool is_head_left = transfer::take_up_all(registry, *cluster, *dsm, hand) &&
                             take_up_generations(*cluster, *dsm, hand) &&
-                            take_up_table(*cluster, further_readers(*cluster, *dsm), hand);
+                            take_up_seats(*cluster, *dsm, hand);
   return is_head_left ? take_up_head(entry, header_bytes(*dsm), hand) : Progress::some_left;
 }
 
@@ -197,18 +201,19 @@ Progress free_subscription(Registry & registry, uint32_t endpoint, BlockInHand &
     return Progress::none_left;
   }
   if (entry.slot.state.load() != SlotState::unreachable) {
-    if (!receive_threads_are_out(registry)) {
+    retire_room(registry, entry);
+    if (!receive_threads_are_out(registry) || !publishers_are_out(registry, entry, endpoint)) {
       return Progress::in_use;
     }
-    if (const Progress progress = see_publishers_out(registry, *cluster, *header, hand);
-        progress != Progress::none_left) {
-      return progress;
+    if (!take_up_retired_room(registry, *cluster, entry, hand)) {
+      return hand.is_empty() ? Progress::in_use : Progress::some_left;
     }
+    registry.phases_seen().forget(endpoint_word(endpoint, entry.slot.incarnation.load()));
     header->magic.store(0);
+    registry.unlink_endpoint(endpoint);
     entry.slot.state.store(SlotState::unreachable);
   }
-  const bool is_head_left = take_up_table(*cluster, source_table(*cluster, *header), hand);
-  return is_head_left ? take_up_head(entry, block_bytes(*header), hand) : Progress::some_left;
+  return take_up_head(entry, block_bytes(*header), hand);
 }
 
 }  // namespace manycore::freeing

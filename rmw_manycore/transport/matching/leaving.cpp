@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/matching/leaving.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -19,7 +20,7 @@ std::vector<uint32_t> close(Registry & registry, uint32_t endpoint) {
     try {
       closing::close(registry, endpoint, false, unread);
     } catch (const ClusterUnmappable &) {
-      // It stays `closing`: the sweep wakes the reaper, which has descriptors of its own.
+      // It stays live until the process ends.
     }
   }
   return unread;
@@ -31,7 +32,9 @@ void leave_graph(Registry & registry, uint32_t endpoint) noexcept {
   try {
     const Cluster & cluster = registry.clusters().at(registry.endpoints()[endpoint].cluster);
     std::vector<uint32_t> closed = close(registry, endpoint);
-    closed.push_back(endpoint);
+    if (std::find(closed.begin(), closed.end(), endpoint) == closed.end()) {
+      closed.push_back(endpoint);
+    }
     for (const uint32_t each : closed) {
       if (sweeping::sweep(registry, each, registry.parting_wait_ns()) == sweeping::Result::in_use) {
         cluster.wake_reaper();

@@ -2,150 +2,163 @@
 #include "transport/matching/orphans.hpp"
 
 #include <algorithm>
-#include <cstring>
-#include <tuple>
 #include <unordered_map>
 
-#include "transport/queue/displaced.hpp"
+#include "transport/layout/subscription_layout.hpp"
+#include "transport/peers/endpoint_terms.hpp"
+#include "transport/queue/reading.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
+#include "transport/registry/topic_rows.hpp"
 #include "transport/topic_dsm/last_published.hpp"
-#include "transport/topic_dsm/reader_table.hpp"
+#include "transport/topic_dsm/seat_table.hpp"
+#include "transport/transfer/transfer.hpp"
 
 namespace manycore::orphans {
 namespace {
 
-bool is_of_replies(const TopicDsmHeader & dsm) {
-  return static_cast<EndpointRole>(dsm.role) == EndpointRole::reply;
+/// Calls `visit(Seat &, EndpointEntry & subscription)` for each seat whose owner is there.
+template<typename Visit>
+void for_each_owner(
+  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, Visit visit) {
+  visit_seats(cluster, dsm, [&](Seat & seat) {
+    if (is_owner_live(registry, seat)) {
+      visit(seat, registry.endpoints()[slot_in(seat.owner.load())]);
+    }
+    return false;
+  });
 }
 
-/// Calls `visit(RecordDescriptor &, number)` for each record of a topic DSM.
-template<typename Visit>
-void visit_records(const Cluster & cluster, TopicDsmHeader & dsm, Visit visit) {
-  for (const GenerationEntry & generation : dsm.generations) {
-    const uint32_t count = generation.descriptor_count.load();
-    auto * const descriptors = cluster.find<RecordDescriptor>(
-      generation.offset.load(), uint64_t{count} * sizeof(RecordDescriptor));
-    if (generation.first.load() == 0 || descriptors == nullptr) {
-      continue;
-    }
-    for (uint32_t i = 0; i < count; ++i) {
-      const uint64_t number = descriptors[i].number.load(std::memory_order_acquire);
-      if (number != no_record) {
-        visit(descriptors[i], number);
-      }
-    }
+SubscriptionHeader * header_of(Registry & registry, const EndpointEntry & subscription) {
+  return registry.map<SubscriptionHeader>(subscription.block);
+}
+
+Seat * seat_for(Cluster & cluster, TopicDsmHeader & dsm) {
+  if (Seat * const free = find_seat(cluster, dsm, 0)) {
+    return free;
+  }
+  const EntryTable<Seat> table = further_seats(cluster, dsm);
+  try {
+    const uint64_t bytes = table.next_block_bytes();
+    return &table.grow(cluster.ref_of(&cluster.allocate_cleared<Seat>(bytes)).offset());
+  } catch (const Error &) {
+    return nullptr;  // no SMEM
   }
 }
 
-/// Cost of a topic DSM in the history of a subscription.
-uint64_t cost(const Reader & reader, uint64_t untaken) {
-  return reader.subscription.keep_all != 0 ? 1 : untaken;
+/// Asks each reader that is owed something to look: hints of the last records may not have been
+/// pushed, or may have been displaced. Stores `orphan` last, so it is repeated if this process
+/// dies.
+void tell_readers(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {
+  for_each_owner(registry, cluster, dsm, [&](Seat & seat, EndpointEntry & subscription) {
+    SubscriptionHeader * const header =
+      owed_to(dsm, seat) == 0 ? nullptr : header_of(registry, subscription);
+    if (header != nullptr) {
+      header->resync.store(1, std::memory_order_seq_cst);
+      notify_watchers(registry, *header);
+    }
+  });
+  dsm.orphan.store(1, std::memory_order_seq_cst);
+}
+
+/// What a subscription keeps, by slot.
+using Kept = std::unordered_map<uint32_t, uint64_t>;
+
+/// True if a subscription has room for what it is owed in its history.
+bool is_kept(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, Kept & kept) {
+  bool is_any = false;
+  for_each_owner(registry, cluster, dsm, [&](Seat & seat, EndpointEntry & subscription) {
+    const uint64_t owed = owed_to(dsm, seat);
+    SubscriptionHeader * const header = owed == 0 ? nullptr : header_of(registry, subscription);
+    if (
+      header == nullptr ||
+      !transfer::can_arrive(registry, cluster, dsm, *header, subscription.cluster, seat)) {
+      return;
+    }
+    uint64_t & of_newer = kept[slot_in(seat.owner.load())];
+    is_any = is_any || of_newer < header->depth;
+    of_newer += header->keep_all != 0 ? 1 : owed;
+  });
+  return is_any;
 }
 
 }  // namespace
 
-std::optional<Reader> reader_of(
-  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, const ReaderEntry & entry) {
-  auto * const source = registry.map<SourceEntry>(SegmentRef{entry.source.load()});
-  auto * const header = registry.map<SubscriptionHeader>(SegmentRef{entry.subscription.load()});
-  const uint32_t slot = entry.endpoint.load();
-  if (source == nullptr || header == nullptr || slot >= registry.endpoints().high_water()) {
-    return std::nullopt;
-  }
-  return Reader{
-    cluster, dsm, *header, *source, registry.endpoints()[slot], slot, entry.source_index.load()};
-}
-
-void for_each_reader(
-  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm,
-  const std::function<void(const Reader &, ReaderEntry &)> & visit) {
-  manycore::for_each_reader(cluster, dsm, [&](ReaderEntry & entry) {
-    if (const std::optional<Reader> reader = reader_of(registry, cluster, dsm, entry)) {
-      visit(*reader, entry);
-    }
-  });
-}
-
-Untaken::Untaken(const Cluster & cluster, TopicDsmHeader & dsm) : dsm_(dsm) {
-  if (!is_of_replies(dsm)) {
+void give_seats_to_readers_of_history(
+  Registry & registry, Cluster & cluster, EndpointEntry & publisher, TopicDsmHeader & dsm) {
+  if (dsm.transient_local == 0 || dsm.last.load() == no_record) {
     return;
   }
-  visit_records(cluster, dsm, [&](const RecordDescriptor & record, uint64_t number) {
-    replies_.push_back({record.correlation.client, number});
-  });
-  std::sort(replies_.begin(), replies_.end(), [](const Reply & a, const Reply & b) {
-    return std::tie(a.client, a.number) < std::tie(b.client, b.number);
-  });
-}
-
-uint64_t Untaken::of(const Reader & reader) const noexcept {
-  if (is_of_replies(dsm_)) {
-    return has_reply(reader) ? 1 : 0;
-  }
-  if (
-    reader.source.taken.load(std::memory_order_acquire) >=
-    dsm_.last.load(std::memory_order_acquire)) {
-    return 0;
-  }
-  const uint64_t published = last_published(dsm_).sequence;
-  const uint64_t accounted = reader.source.accounted.load(std::memory_order_acquire);
-  return std::max<uint64_t>(published - std::min(published, accounted), 1);
-}
-
-/// The newest one tells: hints are displaced in order.
-bool Untaken::has_reply(const Reader & reader) const noexcept {
-  const Gid & client = reader.endpoint.gid;
-  const auto after = std::upper_bound(
-    replies_.begin(), replies_.end(), client,
-    [](const Gid & wanted, const Reply & reply) { return wanted < reply.client; });
-  if (after == replies_.begin() || (after - 1)->client != client) {
-    return false;
-  }
-  const uint64_t newest = (after - 1)->number;
-  const uint32_t incarnation = reader.source.incarnation.load(std::memory_order_relaxed);
-  return newest > reader.source.taken.load(std::memory_order_acquire) &&
-         !Displaced::covers(reader.source.displaced, incarnation, newest);
-}
-
-void cut(Registry & registry, const char * topic, std::vector<uint32_t> & unread) {
-  std::unordered_map<uint32_t, uint64_t> kept;  // by slot of the subscription
-  registry.for_each_of_bucket(topic, Registry::Chain::orphans, [&](uint32_t slot) {
-    const EndpointEntry & entry = registry.endpoints()[slot];
-    Cluster * const cluster = registry.map_cluster(entry.block.cluster());
-    auto * const dsm = registry.map<TopicDsmHeader>(entry.block);
-    if (
-      cluster == nullptr || dsm == nullptr || !has_memory(entry.slot.state.load()) ||
-      std::strncmp(entry.topic, topic, name_bytes) != 0) {
-      return;
-    }
-    const Untaken untaken(*cluster, *dsm);
-    bool is_cut = false;
-    for_each_reader(registry, *cluster, *dsm, [&](const Reader & reader, ReaderEntry &) {
-      const uint64_t count = untaken.of(reader);
-      uint64_t & of_newer = kept[reader.endpoint_slot];
-      if (count != 0 && of_newer >= reader.subscription.depth) {
-        reader.source.state.store(SourceState::revoked, std::memory_order_seq_cst);
-        is_cut = true;
+  const EndpointTerms terms(publisher);
+  for_each_row(
+    registry, publisher.topic, EndpointKind::subscription,
+    [&](EndpointEntry & entry, uint32_t slot) {
+      const uint64_t owner = endpoint_word(slot, entry.slot.incarnation.load());
+      if (
+        !is_live(entry) || entry.qos.durability != Durability::transient_local ||
+        fit_of(terms, entry).kind != Fit::Kind::matched ||
+        find_seat(cluster, dsm, owner) != nullptr) {
+        return;
       }
-      of_newer += cost(reader, count);
+      if (Seat * const seat = seat_for(cluster, dsm)) {
+        give_seat(*seat, owner, {no_record, last_published(dsm).sequence});
+      }
     });
-    if (is_cut) {
-      unread.push_back(slot);
-    }
-  });
 }
 
-/// Replies are excluded: a client counts those itself as it misses them.
-void count_undelivered(Registry & registry, const Reader & reader) {
-  const LastPublished published = last_published(reader.dsm);
-  const uint64_t accounted = reader.source.accounted.load(std::memory_order_acquire);
-  if (is_of_replies(reader.dsm) || !published.exact || published.sequence <= accounted) {
-    return;
+void cut(Registry & registry, const char * topic, std::vector<uint32_t> & unwanted) {
+  std::vector<uint32_t> closed;
+  for_each_row(registry, topic, EndpointKind::publisher, [&](EndpointEntry & entry, uint32_t slot) {
+    if (entry.slot.state.load() == SlotState::closed) {
+      closed.push_back(slot);
+    }
+  });
+  const uint32_t last = registry.header().last_order;
+  std::sort(closed.begin(), closed.end(), [&](uint32_t a, uint32_t b) {
+    return last - registry.endpoints()[a].closed_order <
+           last - registry.endpoints()[b].closed_order;
+  });
+  Kept kept;
+  for (const uint32_t slot : closed) {
+    EndpointEntry & entry = registry.endpoints()[slot];
+    const Cluster * const cluster = registry.map_cluster(entry.block.cluster());
+    auto * const dsm = registry.map<TopicDsmHeader>(entry.block);
+    if (cluster == nullptr || dsm == nullptr) {
+      continue;
+    }
+    if (dsm->orphan.load() == 0) {
+      tell_readers(registry, *cluster, *dsm);
+    }
+    if (!is_kept(registry, *cluster, *dsm, kept)) {
+      entry.slot.state.store(SlotState::freeing, std::memory_order_seq_cst);
+      unwanted.push_back(slot);
+    }
   }
-  registry.endpoints()[reader.endpoint_slot].counters.lost.fetch_add(
-    published.sequence - accounted, std::memory_order_relaxed);
-  reader.source.accounted.store(published.sequence, std::memory_order_release);
-  notify_event_watchers(registry, reader.endpoint.process);
+}
+
+bool is_being_read(Registry & registry, const EndpointEntry & publisher, uint32_t slot) {
+  const Reading reading(slot, publisher.slot.incarnation.load());
+  bool is_any = false;
+  for_each_row(
+    registry, publisher.topic, EndpointKind::subscription, [&](EndpointEntry & entry, uint32_t) {
+      const SubscriptionHeader * const header =
+        is_live(entry) ? header_of(registry, entry) : nullptr;
+      is_any = is_any || (header != nullptr &&
+                          reading.is_any(header->reading.load(std::memory_order_seq_cst)));
+    });
+  return is_any;
+}
+
+void count_undelivered(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {
+  for_each_owner(registry, cluster, dsm, [&](Seat & seat, EndpointEntry & subscription) {
+    const LastPublished published = last_published_for(dsm, seat);
+    const uint64_t accounted = seat.accounted.load(std::memory_order_acquire);
+    if (published.exact && published.sequence > accounted) {
+      subscription.counters.lost.fetch_add(
+        published.sequence - accounted, std::memory_order_relaxed);
+      seat.accounted.store(published.sequence, std::memory_order_release);
+      notify_event_watchers(registry, subscription.process);
+    }
+  });
 }
 
 }  // namespace manycore::orphans

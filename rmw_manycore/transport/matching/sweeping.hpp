@@ -4,8 +4,7 @@
 #include "transport/registry/registry.hpp"
 
 /// Frees what closed endpoints hold, as soon as no process can be using it (see
-/// docs/design/freeing.md), and closes endpoints that a live process could not close because it
-/// could not map a cluster. What is left to free stands in shared memory, so any process goes on
+/// docs/design/freeing.md). What is left to free stands in shared memory, so any process goes on
 /// where another one died.
 namespace manycore::sweeping {
 

@@ -4,21 +4,24 @@
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/notification/announced.hpp"
 #include "transport/registry/odd_phase.hpp"
-#include "transport/topic_dsm/reader_table.hpp"
 
 namespace manycore {
 namespace {
 
-/// Sets them to resync by the reader table: a mover has no list of them, as publishers have.
-void request_resyncs(const Destination & to) noexcept {
-  for_each_reader(to.source, to.dsm, [&](ReaderEntry & entry) {
-    const SegmentRef ref{entry.subscription.load(std::memory_order_acquire)};
-    auto * const header = ref.cluster() == to.receiver.id()
-                            ? to.receiver.find<SubscriptionHeader>(ref.offset())
+/// Looks at the rows in the mover's phase, as the receive thread does.
+void request_resyncs(Registry & registry, const Destination & to) noexcept {
+  const EndpointEntry & publisher = registry.endpoints()[to.dsm.endpoint.load()];
+  registry.walk_bucket(publisher.topic_hash, [&](uint32_t slot, uint32_t) {
+    const EndpointEntry & entry = registry.endpoints()[slot];
+    auto * const header = registry.endpoints().is_live(slot) &&
+                              entry.kind == EndpointKind::subscription &&
+                              entry.block.cluster() == to.receiver.id()
+                            ? to.receiver.find<SubscriptionHeader>(entry.block.offset())
                             : nullptr;
     if (header != nullptr && header->magic.load() == subscription_magic) {
       header->resync.store(1, std::memory_order_seq_cst);
     }
+    return true;
   });
   to.receiver.wake_resyncing();
 }
@@ -49,7 +52,7 @@ void note_arrival(
     TraceKind::arrive, announcement.endpoint, announcement.number, to.receiver.id());
   to.landing.arrive(announcement.number);
   if (!to.receiver.send(announcement)) {
-    request_resyncs(to);
+    request_resyncs(registry, to);
   }
 }
 
@@ -57,7 +60,7 @@ void note_loss(Registry & registry, const Destination & to, uint64_t number) noe
   registry.tracer().note(
     TraceKind::drop, to.dsm.endpoint.load(std::memory_order_relaxed), number, to.receiver.id());
   to.landing.give_up(number);
-  request_resyncs(to);
+  request_resyncs(registry, to);
 }
 
 /// A record that is handed over meanwhile, for a slot already passed, is in the pipe.
@@ -97,7 +100,7 @@ void HandedBefore::look_at(Registry & registry, uint32_t slot, Transfer kind, ui
       if (!is_message) {
         // What the dead mover did not announce. Before a later record is: a hint to that would have
         // readers skip it. For the own cluster the receive thread has asked already.
-        request_resyncs(*to);
+        request_resyncs(registry, *to);
       }
     }
   }
@@ -118,7 +121,7 @@ void HandedBefore::give_up_missing(Registry & registry, std::atomic<uint64_t> & 
     } else if (!is_done) {
       note_loss(registry, *to, number);
     } else if (!is_here) {
-      request_resyncs(*to);  // a later record may have ended it without telling them
+      request_resyncs(registry, *to);  // a later record may have ended it without telling them
     }
   }
   entries_.clear();

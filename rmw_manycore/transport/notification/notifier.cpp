@@ -3,20 +3,10 @@
 
 #include <utility>
 
-#include "transport/queue/source_table.hpp"
 #include "transport/queue/subscriber_queue.hpp"
 
 namespace manycore {
 namespace {
-
-/// A displaced hint usually belongs to the same publisher, whose source entry is already resolved.
-void note_displaced(const Cluster & own, const Reader & reader, const Hint & oldest) noexcept {
-  if (oldest.source == reader.source_index) {
-    note_displaced(*reader.source, oldest);
-  } else {
-    note_displaced(own, *reader.subscription, oldest);
-  }
-}
 
 /// Pushes to the readers of the own cluster; returns the bit mask of the other clusters with
 /// readers.
@@ -26,7 +16,11 @@ uint64_t push_to_own_cluster(
   uint64_t others = 0;
   WakeWords * pending = nullptr;  // readers are grouped by process
   WakeSet words;
+  const Hint hint{announcement.endpoint, announcement.incarnation, announcement.number};
   for (const Reader & reader : readers) {
+    if (reader.seat == nullptr) {
+      continue;
+    }
     if (reader.cluster != own.id()) {
       others |= uint64_t{1} << (reader.cluster - 1);
       continue;
@@ -34,9 +28,7 @@ uint64_t push_to_own_cluster(
     tracer.note(
       TraceKind::hint, reader.endpoint, announcement.number,
       trace_endpoint(announcement.endpoint, announcement.incarnation));
-    const bool changes_events = subscriber_queue::push(
-      *reader.subscription, {reader.source_index, reader.source_incarnation, announcement.number},
-      [&](const Hint & oldest) { note_displaced(own, reader, oldest); });
+    const bool changes_events = subscriber_queue::push(*reader.subscription, hint);
     if (pending != reader.wake && pending != nullptr) {
       tracer.note(TraceKind::wake, announcement.endpoint, announcement.number, words.count());
       pending->notify(std::exchange(words, {}));
@@ -80,9 +72,8 @@ void announce(
   message.endpoint = announcement.endpoint;
   message.incarnation = announcement.incarnation;
   message.number = announcement.number;
-  // Names the client by its slot: the receive thread does not compare gids.
   message.target = is_targeted ? readers.begin()->endpoint : nothing;
-  message.target_index = is_targeted ? readers.begin()->index : 0;
+  message.target_incarnation = is_targeted ? readers.begin()->incarnation : 0;
   for (; others != 0; others &= others - 1) {
     const uint32_t id = static_cast<uint32_t>(__builtin_ctzll(others)) + 1;
     Cluster * const cluster = registry.clusters().find(id);

@@ -1,27 +1,13 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/notification/receive_thread.hpp"
 
-#include "transport/notification/announced.hpp"
-#include "transport/queue/source_table.hpp"
+#include <new>
+#include <utility>
+
 #include "transport/registry/odd_phase.hpp"
-#include "transport/topic_dsm/reader_table.hpp"
+#include "transport/registry/snapshot.hpp"
 
 namespace manycore {
-namespace {
-
-/// Entry of the only reader to notify, or nullptr if it is not where the message says: the table
-/// changed since the message was sent, or there are several readers.
-const ReaderEntry * target_of(
-  const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept {
-  const ReaderEntry * const entry =
-    message.target == nothing ? nullptr : find_reader(source, dsm, message.target_index);
-  const bool is_there = entry != nullptr && entry->active.load(std::memory_order_acquire) != 0 &&
-                        entry->endpoint.load(std::memory_order_acquire) == message.target;
-  return is_there ? entry : nullptr;
-}
-
-}  // namespace
-
 ReceiveThread::ReceiveThread(Registry & registry, uint32_t cluster)
 : registry_(registry), cluster_(registry.clusters().at(cluster)), wakes_(registry) {
   // A dead predecessor may have left it odd.
@@ -80,7 +66,7 @@ void ReceiveThread::run(const ProcessesChanged & on_change) {
     }
     header.messages.store(
       header.messages.load(std::memory_order_relaxed) + count, std::memory_order_relaxed);
-    if (!understood) {
+    if (!understood || std::exchange(must_recover_, false)) {
       recover();
       on_change(EmcosMessageKind::detach, nothing);  // unread messages may include a detach
     }
@@ -91,74 +77,78 @@ void ReceiveThread::run(const ProcessesChanged & on_change) {
   }
 }
 
-/// Step 2 of ROS-lite2 Fig. 4: receive thread -> queue -> wake.
+/// Step 2 of ROS-lite2 Fig. 4: receive thread -> queue -> wake. Reads rows only, never the topic
+/// DSM, which may be freed: the hint is then one more stale one.
 void ReceiveThread::forward(const EmcosMessage & message) noexcept {
   const OddPhase phase(cluster_.header().phase);
-  if (const Announced announced = Announced::find(registry_, message)) {
-    registry_.tracer().note(TraceKind::receive, message.endpoint, message.number, cluster_.id());
-    while (!push_to_readers(*announced.source, *announced.dsm, message)) {
+  registry_.tracer().note(TraceKind::receive, message.endpoint, message.number, cluster_.id());
+  try {
+    if (message.target != nothing) {
+      push_to_target(message);
+    } else if (const Peers * const readers = readers_of(message)) {
+      for (const Peer & reader : readers->all()) {
+        push(reader.slot, reader.process, reader.block, message);
+      }
     }
-    wakes_.flush();
+  } catch (const std::bad_alloc &) {
+    must_recover_ = true;  // hints are missing
+  }
+  wakes_.flush();
+}
+
+/// The client that a reply names, if its row is live in this phase.
+void ReceiveThread::push_to_target(const EmcosMessage & message) noexcept {
+  if (message.target >= registry_.endpoints().high_water()) {
+    return;
+  }
+  const EntryCopy<EndpointEntry> row(registry_.endpoints(), message.target);
+  if (
+    (*row).kind == EndpointKind::subscription && row.incarnation() == message.target_incarnation &&
+    row.holds()) {
+    push(message.target, (*row).process.load(), (*row).block, message);
   }
 }
 
-/// False if the reader table changed concurrently: an entry may then mix fields of two readers. The
-/// retry pushes some hints twice; subscribers ignore duplicates.
-bool ReceiveThread::push_to_readers(
-  const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept {
-  const uint64_t generation = dsm.match_generation.load(std::memory_order_seq_cst);
-  if (const ReaderEntry * const target = target_of(source, dsm, message)) {
-    return push_to_reader(*target, dsm, generation, message);
+/// The readers of a message's publisher, renewed in this phase, after the message was read: so one
+/// that was there when the record was published is among them. Nullptr if the publisher is gone.
+const Peers * ReceiveThread::readers_of(const EmcosMessage & message) {
+  if (message.endpoint >= registry_.endpoints().high_water()) {
+    return nullptr;
   }
-  bool unchanged = true;
-  visit_reader_table(source, dsm, [&](const ReaderEntry & entry, uint32_t) {
-    unchanged = entry.active.load(std::memory_order_acquire) == 0 ||
-                push_to_reader(entry, dsm, generation, message);
-    return !unchanged;
-  });
-  return unchanged;
+  Publisher & known = publishers_[message.endpoint];
+  if (!known.readers || known.incarnation != message.incarnation) {
+    const EntryCopy<EndpointEntry> row(registry_.endpoints(), message.endpoint);
+    if (
+      row.incarnation() != message.incarnation || !row.is_whole() ||
+      (*row).kind != EndpointKind::publisher) {
+      return nullptr;
+    }
+    known.readers.emplace(registry_, *row);
+    known.incarnation = message.incarnation;
+  }
+  known.readers->refresh();
+  return &*known.readers;
 }
 
-bool ReceiveThread::push_to_reader(
-  const ReaderEntry & entry, const TopicDsmHeader & dsm, uint64_t generation,
-  const EmcosMessage & message) noexcept {
-  // Acquire: a field of the entry's next reader implies that `match_generation` is incremented.
-  const uint32_t endpoint = entry.endpoint.load(std::memory_order_acquire);
-  if (message.target != nothing && message.target != endpoint) {
-    return true;
-  }
-  const SegmentRef subscription{entry.subscription.load(std::memory_order_acquire)};
-  const Hint hint{
-    entry.source_index.load(std::memory_order_acquire),
-    entry.source_incarnation.load(std::memory_order_acquire), message.number};
-  const bool unchanged = dsm.match_generation.load(std::memory_order_seq_cst) == generation;
-  if (unchanged && subscription.cluster() == cluster_.id()) {
-    push(subscription, hint, message);
-  }
-  return unchanged;
-}
-
-void ReceiveThread::push(SegmentRef ref, const Hint & hint, const EmcosMessage & message) noexcept {
-  auto * const subscription = cluster_.find<SubscriptionHeader>(ref.offset());
+void ReceiveThread::push(
+  uint32_t slot, uint32_t process, SegmentRef block, const EmcosMessage & message) noexcept {
+  auto * const subscription =
+    block.cluster() == cluster_.id() ? cluster_.find<SubscriptionHeader>(block.offset()) : nullptr;
   if (
     subscription == nullptr ||
     subscription->magic.load(std::memory_order_relaxed) != subscription_magic) {
     return;
   }
   registry_.tracer().note(
-    TraceKind::hint, subscription->endpoint.load(std::memory_order_relaxed), message.number,
-    trace_endpoint(message.endpoint, message.incarnation));
-  const bool changes_events = subscriber_queue::push(*subscription, hint, [&](const Hint & oldest) {
-    note_displaced(cluster_, *subscription, oldest);
-  });
+    TraceKind::hint, slot, message.number, trace_endpoint(message.endpoint, message.incarnation));
+  const bool changes_events =
+    subscriber_queue::push(*subscription, {message.endpoint, message.incarnation, message.number});
   ClusterHeader & header = cluster_.header();
   header.notifications.store(
     header.notifications.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-  const uint32_t process = subscription->process.load(std::memory_order_relaxed);
   if (process < registry_.processes().high_water()) {
     WakeWords & wake = registry_.processes()[process].wake;
-    const uint32_t endpoint = subscription->endpoint.load(std::memory_order_relaxed);
-    wakes_.add(process, wake.mark_arrival(subscription->watchers, endpoint, changes_events));
+    wakes_.add(process, wake.mark_arrival(subscription->watchers, slot, changes_events));
   }
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <unordered_map>
 
-#include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/notification/pending_wakes.hpp"
+#include "transport/peers/peers.hpp"
 #include "transport/queue/subscriber_queue.hpp"
 #include "transport/registry/registry.hpp"
 
@@ -33,12 +35,11 @@ private:
   /// False for an unknown message kind.
   bool handle(const EmcosMessage & message, const ProcessesChanged & on_change);
   void forward(const EmcosMessage & message) noexcept;
-  bool push_to_readers(
-    const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept;
-  bool push_to_reader(
-    const ReaderEntry & entry, const TopicDsmHeader & dsm, uint64_t generation,
-    const EmcosMessage & message) noexcept;
-  void push(SegmentRef subscription, const Hint & hint, const EmcosMessage & message) noexcept;
+  /// May throw std::bad_alloc.
+  const Peers * readers_of(const EmcosMessage & message);
+  void push_to_target(const EmcosMessage & message) noexcept;
+  void push(
+    uint32_t slot, uint32_t process, SegmentRef block, const EmcosMessage & message) noexcept;
   void request_resync(uint32_t slot) noexcept;
   bool take_overflow() noexcept;
   void wake_cluster() noexcept;
@@ -47,6 +48,13 @@ private:
   Cluster & cluster_;
   PendingWakes wakes_;
   EmcosMessage batch_[batch_size];
+  /// A publisher from which a message has come.
+  struct Publisher {
+    uint32_t incarnation = 0;
+    std::optional<Peers> readers;
+  };
+  std::unordered_map<uint32_t, Publisher> publishers_;  ///< by slot
+  bool must_recover_ = false;
 };
 
 }  // namespace manycore

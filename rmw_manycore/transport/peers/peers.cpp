@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "transport/registry/snapshot.hpp"
-
 namespace manycore {
 
 Peers::Peers(Registry & registry, const EndpointEntry & own, Of of)
@@ -28,7 +26,8 @@ bool Peers::refresh() {
 Peers::Presence Peers::presence_of(const Peer & peer) const noexcept {
   const EndpointEntry & entry = registry_.endpoints()[peer.slot];
   const SlotState state = entry.slot.state.load(std::memory_order_acquire);
-  const bool has_died = entry.died.load(std::memory_order_acquire) != 0;
+  const bool was_alive = peer.liveliness == Liveliness::automatic || entry.asserted_ns.load() != 0;
+  const bool has_died = entry.died.load(std::memory_order_acquire) != 0 && was_alive;
   std::atomic_thread_fence(std::memory_order_acquire);
   if (entry.slot.incarnation.load(std::memory_order_relaxed) != peer.incarnation) {
     return Presence::left;
@@ -58,11 +57,11 @@ void Peers::find_new() {
   bool is_first = true;
   uint32_t newest = newest_order_;
   registry_.walk_bucket(own_.topic_hash, [&](uint32_t slot, uint32_t incarnation) {
-    const EndpointEntry & entry = registry_.endpoints()[slot];
-    const uint32_t order = entry.order;
-    if (entry.slot.incarnation.load(std::memory_order_acquire) != incarnation) {
-      return true;  // it has left: `order` is another one's
+    const EntryCopy<EndpointEntry> row(registry_.endpoints(), slot);
+    if (row.incarnation() != incarnation || !row.is_whole()) {
+      return true;  // it has left
     }
+    const uint32_t order = (*row).order;
     if (is_known(order)) {
       return false;
     }
@@ -70,7 +69,7 @@ void Peers::find_new() {
       newest = order;
     }
     is_first = false;
-    consider(slot, incarnation);
+    consider(slot, row);
     return true;
   });
   peers_.reserve(peers_.size() + found_.size());
@@ -80,13 +79,11 @@ void Peers::find_new() {
   newest_order_ = newest;
 }
 
-void Peers::consider(uint32_t slot, uint32_t incarnation) {
-  const EntryCopy<EndpointEntry> copy(registry_.endpoints(), slot);
-  const EndpointEntry & entry = *copy;
-  const bool is_there =
-    of_ == Of::live ? copy.state() == SlotState::live : has_memory(copy.state());
-  if (!is_there || copy.incarnation() != incarnation || !copy.is_whole()) {
-    return;  // it has left
+void Peers::consider(uint32_t slot, const EntryCopy<EndpointEntry> & row) {
+  const EndpointEntry & entry = *row;
+  const bool is_there = of_ == Of::live ? row.state() == SlotState::live : has_memory(row.state());
+  if (!is_there) {
+    return;
   }
   const Fit fit = fit_of(own_, entry);
   switch (fit.kind) {
@@ -97,15 +94,23 @@ void Peers::consider(uint32_t slot, uint32_t incarnation) {
       return;
     case Fit::Kind::other_qos:
       ++found_counts_.incompatible_qos;
-      found_counts_.last_policy = fit.policy;
+      if (found_counts_.incompatible_qos == counts_.incompatible_qos + 1) {
+        found_counts_.last_policy = fit.policy;  // the youngest one's
+      }
       return;
     case Fit::Kind::matched:
       ++found_counts_.matched_total;
       found_counts_.died -= found_counts_.died == 0 ? 0 : 1;
       found_.push_back(
-        {slot, incarnation, entry.process.load(std::memory_order_relaxed), entry.block, entry.gid,
-         entry.qos.reliability, entry.qos.durability, entry.qos.liveliness});
+        {slot, row.incarnation(), entry.process.load(std::memory_order_relaxed), entry.block,
+         entry.gid, entry.qos.reliability, entry.qos.durability, entry.qos.liveliness});
   }
+}
+
+std::vector<Peer> peers_of(Registry & registry, const EndpointEntry & entry) {
+  Peers peers(registry, entry);
+  peers.refresh();
+  return peers.all();
 }
 
 }  // namespace manycore

@@ -5,6 +5,7 @@
 
 #include "transport/peers/endpoint_terms.hpp"
 #include "transport/registry/registry.hpp"
+#include "transport/registry/snapshot.hpp"
 
 namespace manycore {
 
@@ -63,7 +64,7 @@ private:
   Presence presence_of(const Peer & peer) const noexcept;
   void drop_gone() noexcept;
   void find_new();
-  void consider(uint32_t slot, uint32_t incarnation);
+  void consider(uint32_t slot, const EntryCopy<EndpointEntry> & row);
   /// True for an endpoint that an earlier walk has seen.
   bool is_known(uint32_t order) const noexcept;
 
@@ -79,5 +80,8 @@ private:
   bool has_walked_ = false;
   uint32_t newest_order_ = 0;  ///< of an endpoint seen by an earlier walk
 };
+
+/// The peers of an endpoint now. May throw std::bad_alloc.
+std::vector<Peer> peers_of(Registry & registry, const EndpointEntry & entry);
 
 }  // namespace manycore

@@ -73,12 +73,12 @@ uint64_t Publisher::publish(
 
 Transfer Publisher::transfer() const noexcept { return impl_->entry.transfer; }
 
-MatchedCount Publisher::matched() const { return matched_of(impl_->entry); }
+MatchedCount Publisher::matched() const { return impl_->matches.matched(); }
 
-IncompatibleCount Publisher::incompatible() const { return incompatible_of(impl_->entry); }
+IncompatibleCount Publisher::incompatible() const { return impl_->matches.incompatible(); }
 
 uint64_t Publisher::incompatible_types() const noexcept {
-  return impl_->entry.incompatible_types.load();
+  return impl_->matches.incompatible_types();
 }
 
 TimedCount Publisher::deadline_missed() const noexcept {

@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "transport/layout/deadline_clock.hpp"
+#include "transport/peers/matches.hpp"
 #include "transport/publisher/publisher.hpp"
 #include "transport/qos/manual_liveliness.hpp"
 #include "transport/registry/membership.hpp"
@@ -22,7 +23,8 @@ struct Publisher::Impl {
     cluster(registry_.clusters().at(entry.cluster)),
     writer(registry_, cluster, entry),
     liveliness(entry.asserted_ns, entry.qos.liveliness_lease_ns),
-    sender(registry_, cluster, entry) {
+    sender(registry_, cluster, entry),
+    matches(registry_, entry) {
     deadline.reset();
   }
 
@@ -49,6 +51,7 @@ struct Publisher::Impl {
   DeadlineClock deadline;
   ManualLiveliness liveliness;
   TransferSender sender;
+  Matches matches;
 };
 
 }  // namespace manycore

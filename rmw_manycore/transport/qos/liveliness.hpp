@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "transport/registry/registry.hpp"
+#include "transport/peers/matches.hpp"
 
 namespace manycore {
 
@@ -11,11 +11,7 @@ namespace manycore {
 /// MANUAL_BY_TOPIC publisher is alive for the subscription's lease after each assertion, and counts
 /// as neither before the first. A publisher whose process died is not alive until a new publisher
 /// is matched in its place (see docs/design/qos_timing.md).
-LivelinessCount liveliness_of(Registry & registry, const EndpointEntry & subscription);
-
-/// Call under the registry lock for each match of a publisher whose process died.
-void note_death(const EndpointEntry & publisher, EndpointEntry & subscription);
-/// Call under the registry lock when the subscription gets a new publisher.
-void note_successor(EndpointEntry & subscription);
+LivelinessCount liveliness_of(
+  Registry & registry, const Matches & matches, int64_t requested_lease_ns);
 
 }  // namespace manycore

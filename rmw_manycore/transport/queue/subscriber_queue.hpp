@@ -6,46 +6,19 @@
 #include <optional>
 
 #include "transport/layout/subscription_layout.hpp"
+#include "transport/queue/hint.hpp"
 
 namespace manycore {
 
-/// "Source `source` has record `number` for you." May be stale, duplicated or missing; the reader
-/// always verifies it against the topic DSM (docs/design/topic_dsm.md).
-struct Hint {
-  uint32_t source = 0;              ///< index in the subscription's source table, 14 bits
-  uint32_t source_incarnation = 0;  ///< only the low 6 bits are stored
-  uint64_t number = 0;              ///< only the low 28 bits are stored
-
-  static constexpr uint32_t source_limit = 1u << 14;
-  static constexpr uint32_t incarnation_mask = (1u << 6) - 1;
-  static constexpr uint64_t number_mask = (uint64_t{1} << 28) - 1;
-
-  bool is_of(uint32_t incarnation) const noexcept {
-    return source_incarnation == (incarnation & incarnation_mask);
-  }
-  /// The newest published number with these low bits. A queued hint is less than one period (2^28)
-  /// old, however long nothing was taken. If no number with these bits was published, the result
-  /// wraps and is greater than `latest`.
-  static uint64_t full_number(uint64_t low_bits, uint64_t latest) noexcept {
-    return latest - ((latest - low_bits) & number_mask);
-  }
-};
-
 namespace subscriber_queue {
 
-/// Word of a slot: lap of its position (16 bits) | source incarnation (6) | source (14) | number
-/// (28). The lap makes the word differ at each reuse of the slot, so a delayed pusher's exchange
-/// fails.
+/// Word of a slot: lap of its position (16 bits) | hint (48). The lap makes the word differ at each
+/// reuse of the slot, so a delayed pusher's exchange fails.
 inline uint64_t encode(uint64_t lap, const Hint & hint) noexcept {
-  return lap << 48 | uint64_t{hint.source_incarnation & Hint::incarnation_mask} << 42 |
-         uint64_t{hint.source} << 28 | (hint.number & Hint::number_mask);
+  return lap << Hint::bits | hint.word();
 }
 
-inline Hint decode(uint64_t word) noexcept {
-  return {
-    static_cast<uint32_t>(word >> 28) & (Hint::source_limit - 1),
-    static_cast<uint32_t>(word >> 42) & Hint::incarnation_mask, word & Hint::number_mask};
-}
+inline Hint decode(uint64_t word) noexcept { return Hint::of(word); }
 
 /// The slots of one queue, addressed by position.
 class Slots {
@@ -80,11 +53,9 @@ inline void initialize(SubscriptionHeader & header) noexcept {
 /// sets `resync`, so the subscriber scans its sources.
 ///
 /// The push takes effect with the exchange on the slot. A pusher that finds the slot at `tail`
-/// filled advances `tail`, so a pusher that died between the two exchanges blocks no other. Calls
-/// `on_displaced(Hint)` for each displaced hint. Returns true when threads waiting for the
-/// subscription's events must be woken as well.
-template<typename OnDisplaced>
-bool push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displaced) noexcept {
+/// filled advances `tail`, so a pusher that died between the two exchanges blocks no other. Returns
+/// true when threads waiting for the subscription's events must be woken as well.
+inline bool push(SubscriptionHeader & header, const Hint & hint) noexcept {
   // A failed attempt was overtaken by another pusher; only a damaged queue fails this often.
   constexpr int max_attempts = 10'000;
   bool changes_events = header.note_arrival();
@@ -105,9 +76,7 @@ bool push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displac
       if (header.keep_all != 0) {
         break;
       }
-      const uint64_t oldest = slots.at(head).load(std::memory_order_acquire);
       if (header.head.compare_exchange_strong(head, head + 1, std::memory_order_acq_rel)) {
-        on_displaced(decode(oldest));  // the exchange on `head` proves that the slot still held it
         changes_events = true;
       }
       continue;
@@ -155,22 +124,6 @@ inline std::optional<Hint> pop(SubscriptionHeader & header) noexcept {
 inline uint64_t size(SubscriptionHeader & header) noexcept {
   const uint64_t head = header.head.load(std::memory_order_acquire);
   return header.tail.load(std::memory_order_acquire) - head;
-}
-
-/// Calls `visit(Hint)` for the newest hints in the queue, `most` at most. Some of them may have
-/// been removed meanwhile.
-template<typename Visit>
-void visit_newest(SubscriptionHeader & header, uint64_t most, Visit visit) noexcept {
-  const Slots slots(header);
-  const uint64_t head = header.head.load(std::memory_order_acquire);  // first, so head <= tail
-  const uint64_t tail = header.tail.load(std::memory_order_acquire);
-  const uint64_t held = std::min<uint64_t>(tail - head, header.depth);
-  for (uint64_t back = 1; back <= std::min(held, most); ++back) {
-    const uint64_t word = slots.at(tail - back).load(std::memory_order_acquire);
-    if (slots.filled(word, tail - back)) {
-      visit(decode(word));
-    }
-  }
 }
 
 /// seq_cst: a thread adds itself to the watchers, and sleeps if it finds the queue empty (see

@@ -5,16 +5,6 @@
 
 namespace manycore {
 
-MatchedCount matched_of(const EndpointEntry & entry) {
-  const uint64_t total = entry.matched_total.load();
-  return {total, std::min(entry.matched_current.load(), total)};
-}
-
-IncompatibleCount incompatible_of(const EndpointEntry & entry) {
-  return {
-    entry.incompatible_total.load(), static_cast<QosPolicy>(entry.incompatible_policy.load())};
-}
-
 uint64_t lost_so_far(
   const EndpointEntry & entry, const SubscriptionHeader & header, uint64_t displaced) {
   const uint64_t lost = entry.counters.lost.load(std::memory_order_relaxed);
@@ -37,17 +27,6 @@ void notify_event_watchers(Registry & registry, uint32_t process) {
   if (registry.processes().is_live(process)) {
     registry.processes()[process].wake.notify_events();
   }
-}
-
-TopicDsmHeader * topic_dsm_of(Registry & registry, const SourceEntry & source) {
-  const uint32_t slot = source.topic_dsm_endpoint.load();
-  if (slot >= registry.endpoints().high_water()) {
-    return nullptr;
-  }
-  const Slot & publisher = registry.endpoints()[slot].slot;
-  const bool there = has_memory(publisher.state.load()) &&
-                     publisher.incarnation == source.topic_dsm_incarnation.load();
-  return there ? registry.map<TopicDsmHeader>(SegmentRef{source.topic_dsm.load()}) : nullptr;
 }
 
 }  // namespace manycore

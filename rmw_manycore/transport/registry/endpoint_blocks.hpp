@@ -10,10 +10,6 @@ namespace manycore {
 /// Operations shared by matching and closing. The caller holds the registry lock unless stated
 /// otherwise.
 
-/// Counts of an endpoint's matched and incompatible-QoS events. Like lost_so_far(), needs no lock.
-MatchedCount matched_of(const EndpointEntry & entry);
-IncompatibleCount incompatible_of(const EndpointEntry & entry);
-
 /// Messages that a subscription has lost as far as is known: those found missing by publication
 /// sequence number, or the hints displaced since the subscriber last checked, whichever is more.
 /// `displaced`: SubscriptionHeader::displaced() of now.
@@ -23,9 +19,5 @@ uint64_t lost_so_far(
 /// Wakes threads that wait for messages of the subscription, or for events of the process.
 void notify_watchers(Registry & registry, const SubscriptionHeader & header);
 void notify_event_watchers(Registry & registry, uint32_t process);
-
-/// Topic DSM of a source, or nullptr if the publisher's slot no longer owns it and the memory may
-/// be reused. Throws ClusterUnmappable.
-TopicDsmHeader * topic_dsm_of(Registry & registry, const SourceEntry & source);
 
 }  // namespace manycore

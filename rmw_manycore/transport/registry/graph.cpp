@@ -47,8 +47,7 @@ EndpointInfo describe(uint32_t, const EndpointEntry & entry) {
   info.node = entry.node;
   info.process = entry.process;
   info.cluster = entry.cluster;
-  info.matched = matched_of(entry);
-  info.incompatible = incompatible_of(entry);
+  info.ignore_local = entry.ignore_local != 0;
   info.transfer = entry.transfer;
   return info;
 }
@@ -59,9 +58,8 @@ std::vector<EndpointInfo> all_endpoints(Registry & registry) {
 
 std::vector<EndpointInfo> chained_endpoints(Registry & registry, const std::string & topic) {
   std::vector<EndpointInfo> all;
-  registry.for_each_of_bucket(topic.c_str(), Registry::Chain::live, [&](uint32_t slot) {
-    append_live(registry.endpoints(), slot, all, describe);
-  });
+  registry.for_each_of_bucket(
+    topic.c_str(), [&](uint32_t slot) { append_live(registry.endpoints(), slot, all, describe); });
   return all;
 }
 

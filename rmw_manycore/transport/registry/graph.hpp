@@ -65,8 +65,7 @@ struct EndpointInfo {
   uint32_t node = 0;     ///< node handle
   uint32_t process = 0;  ///< process slot
   uint32_t cluster = 0;
-  MatchedCount matched;
-  IncompatibleCount incompatible;
+  bool ignore_local = false;
   Transfer transfer = Transfer::dsm;  ///< of the topic
 };
 

@@ -103,7 +103,6 @@ void Registry::create(
   header.topic_count = static_cast<uint32_t>(topics.size());
   for (uint32_t i = 0; i < topic_bucket_count; ++i) {
     header.topic_buckets[i].first.store(nothing, std::memory_order_relaxed);
-    header.orphan_buckets[i].store(nothing, std::memory_order_relaxed);
   }
   memory.reserve(topic_table_offset, std::max<size_t>(topics.size(), 1) * sizeof(TopicEntry));
   for (size_t i = 0; i < topics.size(); ++i) {
@@ -216,50 +215,50 @@ const TopicEntry * Registry::find_topic(const std::string & name) const noexcept
   return nullptr;
 }
 
-std::atomic<uint32_t> & Registry::bucket_of(uint64_t topic_hash, Chain chain) const noexcept {
-  const uint64_t index = topic_hash % topic_bucket_count;
-  return chain == Chain::live ? header().topic_buckets[index].first : header().orphan_buckets[index];
+TopicBucket & Registry::bucket_of(uint64_t topic_hash) const noexcept {
+  return header().topic_buckets[topic_hash % topic_bucket_count];
+}
+
+void Registry::raise_all_changes() noexcept {
+  for (TopicBucket & bucket : header().topic_buckets) {
+    bucket.changes.fetch_add(1, std::memory_order_seq_cst);
+  }
 }
 
 void Registry::raise_changes(uint64_t topic_hash) noexcept {
-  header().topic_buckets[topic_hash % topic_bucket_count].changes.fetch_add(
-    1, std::memory_order_seq_cst);
+  bucket_of(topic_hash).changes.fetch_add(1, std::memory_order_seq_cst);
 }
 
 uint64_t Registry::changes_of(uint64_t topic_hash) const noexcept {
-  return header().topic_buckets[topic_hash % topic_bucket_count].changes.load(
-    std::memory_order_seq_cst);
+  return bucket_of(topic_hash).changes.load(std::memory_order_seq_cst);
 }
 
 // The lock excludes concurrent changes of chains. Graph reads without the lock check afterwards
 // whether a change interfered. The order of loads and stores therefore matters only to
-// for_each_older().
+// walk_bucket().
 constexpr auto chained = std::memory_order_relaxed;
 
-void Registry::link_before(uint32_t slot, uint32_t next) noexcept {
+/// At each instruction a chain holds its old or its new content. If this process dies in between,
+/// only `previous_of_topic` and what repair() rebuilds may be wrong.
+void Registry::link_endpoint(uint32_t slot) noexcept {
   EndpointEntry & entry = endpoints_[slot];
+  std::atomic<uint32_t> & bucket = bucket_of(entry.topic_hash).first;
+  const uint32_t next = bucket.load(chained);
   entry.previous_of_topic = nothing;
   // Release: a walk that loads the link also sees the slot's new incarnation.
   entry.next_of_topic.store(next, std::memory_order_release);
   if (next < endpoints_.high_water()) {
     endpoints_[next].previous_of_topic = slot;
   }
-}
-
-/// At each instruction a chain holds its old or its new content. If this process dies in between,
-/// only `previous_of_topic` and what repair() rebuilds may be wrong.
-void Registry::link_endpoint(uint32_t slot, Chain chain) noexcept {
-  std::atomic<uint32_t> & bucket = bucket_of(endpoints_[slot].topic_hash, chain);
-  link_before(slot, bucket.load(chained));
   // Release: a walk that begins at the bucket likewise.
   bucket.store(slot, std::memory_order_release);
 }
 
 /// The link that leads to an endpoint in its chain. Searches the chain if `previous_of_topic` is
 /// damaged.
-std::atomic<uint32_t> * Registry::link_to(uint32_t slot, Chain chain) noexcept {
+std::atomic<uint32_t> * Registry::link_to(uint32_t slot) noexcept {
   EndpointEntry & entry = endpoints_[slot];
-  std::atomic<uint32_t> * link = &bucket_of(entry.topic_hash, chain);
+  std::atomic<uint32_t> * link = &bucket_of(entry.topic_hash).first;
   if (entry.previous_of_topic < endpoints_.high_water()) {
     std::atomic<uint32_t> & next = endpoints_[entry.previous_of_topic].next_of_topic;
     if (next.load(chained) == slot) {
@@ -276,9 +275,9 @@ std::atomic<uint32_t> * Registry::link_to(uint32_t slot, Chain chain) noexcept {
   return linked == slot ? link : nullptr;
 }
 
-void Registry::unlink_endpoint(uint32_t slot, Chain chain) noexcept {
+void Registry::unlink_endpoint(uint32_t slot) noexcept {
   EndpointEntry & entry = endpoints_[slot];
-  std::atomic<uint32_t> * const link = link_to(slot, chain);
+  std::atomic<uint32_t> * const link = link_to(slot);
   if (link == nullptr) {
     return;
   }
@@ -294,42 +293,14 @@ void Registry::unlink_endpoint(uint32_t slot, Chain chain) noexcept {
 std::optional<uint32_t> Registry::next_of(uint32_t slot, uint32_t incarnation) const noexcept {
   const EndpointEntry & entry = endpoints_[slot];
   const uint32_t next = entry.next_of_topic.load(std::memory_order_acquire);
-  const bool was_in_it = endpoints_.is_live(slot) && entry.slot.incarnation.load() == incarnation;
+  const bool was_in_it = is_linked(entry.slot.state.load(std::memory_order_acquire)) &&
+                         entry.slot.incarnation.load() == incarnation;
   return was_in_it ? std::optional(next) : std::nullopt;
 }
 
 /// If the current endpoint has left the chain, the walk goes back to the last endpoint of its path
-/// that has not left: all older endpoints still follow that one.
-void Registry::for_each_older(
-  uint32_t slot, const std::function<void(uint32_t, uint32_t)> & visit) const {
-  struct Place {
-    uint32_t slot;
-    uint32_t incarnation;
-  };
-  std::vector<Place> path{{slot, endpoints_[slot].slot.incarnation.load()}};
-  // Each endpoint is visited once and leaves once. The limit ends the walk in a damaged chain,
-  // which may have a cycle.
-  for (uint32_t i = 0; !path.empty() && i < 4 * endpoint_capacity; ++i) {
-    const auto [at, incarnation] = path.back();
-    const std::optional<uint32_t> next = next_of(at, incarnation);
-    if (!next) {
-      path.pop_back();
-      continue;
-    }
-    if (*next >= endpoints_.high_water()) {
-      return;
-    }
-    const uint32_t incarnation_of_next = endpoints_[*next].slot.incarnation.load();
-    if (next_of(at, incarnation) != next) {
-      continue;  // the next endpoint may have left, and its slot may be in another chain
-    }
-    path.push_back({*next, incarnation_of_next});
-    visit(*next, incarnation_of_next);
-  }
-}
-
-/// An empty path stands for the bucket, where a walk goes back to if all of its path has left: new
-/// endpoints are in front, and what it has visited has left.
+/// that has not left: all older endpoints still follow that one. An empty path stands for the
+/// bucket.
 void Registry::walk_bucket(
   uint64_t topic_hash, const std::function<bool(uint32_t, uint32_t)> & visit) const {
   struct Place {
@@ -338,9 +309,8 @@ void Registry::walk_bucket(
   };
   std::vector<Place> path;
   const auto next_of_path = [&] {
-    return path.empty()
-             ? std::optional(bucket_of(topic_hash, Chain::live).load(std::memory_order_acquire))
-             : next_of(path.back().slot, path.back().incarnation);
+    return path.empty() ? std::optional(bucket_of(topic_hash).first.load(std::memory_order_acquire))
+                        : next_of(path.back().slot, path.back().incarnation);
   };
   // The limit ends the walk in a damaged chain, which may have a cycle.
   for (uint32_t i = 0; i < 4 * endpoint_capacity; ++i) {
@@ -364,8 +334,8 @@ void Registry::walk_bucket(
 }
 
 void Registry::for_each_of_bucket(
-  const char * topic, Chain chain, const std::function<void(uint32_t)> & visit) const {
-  uint32_t slot = bucket_of(hash_name(topic), chain).load(chained);
+  const char * topic, const std::function<void(uint32_t)> & visit) const {
+  uint32_t slot = bucket_of(hash_name(topic)).first.load(chained);
   for (uint32_t i = 0; slot < endpoints_.high_water() && i < endpoint_capacity; ++i) {
     const uint32_t next = endpoints_[slot].next_of_topic.load(chained);
     visit(slot);

@@ -13,6 +13,7 @@
 #include "platform/shared_memory.hpp"
 #include "transport/layout/registry_layout.hpp"
 #include "transport/registry/cluster.hpp"
+#include "transport/registry/phases_seen.hpp"
 #include "transport/registry/registry_mutex.hpp"
 #include "transport/trace/tracer.hpp"
 
@@ -124,6 +125,8 @@ public:
     RegistryMutex::Taken taken_;
   };
 
+  PhasesSeen & phases_seen() noexcept { return phases_seen_; }
+
   /// Takes the lock as the holder of a line, whose hand is then this process's; see
   /// RegistryMutex::sit().
   void sit(uint32_t line) noexcept {
@@ -167,21 +170,13 @@ public:
   /// Line of the topic table, or nullptr.
   const TopicEntry * find_topic(const std::string & name) const noexcept;
 
-  /// Chains of endpoints by topic, from the last one linked to the first. An endpoint is in one of
-  /// them: publishers that are gone are among the `orphans` until their memory is unreachable.
-  enum class Chain { live, orphans };
-  /// The caller holds the lock.
-  void link_endpoint(uint32_t slot, Chain chain) noexcept;
-  void unlink_endpoint(uint32_t slot, Chain chain) noexcept;
+  /// The chain of a topic's bucket leads from the endpoint that was linked last to the first one.
+  /// An endpoint is in it until its memory is unreachable. The caller holds the lock.
+  void link_endpoint(uint32_t slot) noexcept;
+  void unlink_endpoint(uint32_t slot) noexcept;
   /// Visits the slots in a topic's bucket, which other topics may share. Without the lock, a
   /// concurrent change may lead the walk to other buckets, but not out of the table.
-  void for_each_of_bucket(
-    const char * topic, Chain chain, const std::function<void(uint32_t)> & visit) const;
-
-  /// Calls `visit(slot, incarnation)` for each older endpoint in the bucket of a live endpoint;
-  /// other topics may share the bucket. Needs no lock. Endpoints that leave
-  /// meanwhile may be visited or missed; all others are visited.
-  void for_each_older(uint32_t slot, const std::function<void(uint32_t, uint32_t)> & visit) const;
+  void for_each_of_bucket(const char * topic, const std::function<void(uint32_t)> & visit) const;
 
   /// Calls `visit(slot, incarnation)` for each endpoint in the bucket of a topic, from the youngest
   /// on, until it returns false; other topics may share the bucket. Needs no lock. Endpoints that
@@ -200,9 +195,8 @@ public:
 
 private:
   friend class Lock;
-  std::atomic<uint32_t> & bucket_of(uint64_t topic_hash, Chain chain) const noexcept;
-  void link_before(uint32_t slot, uint32_t next) noexcept;
-  std::atomic<uint32_t> * link_to(uint32_t slot, Chain chain) noexcept;
+  TopicBucket & bucket_of(uint64_t topic_hash) const noexcept;
+  std::atomic<uint32_t> * link_to(uint32_t slot) noexcept;
   std::optional<uint32_t> next_of(uint32_t slot, uint32_t incarnation) const noexcept;
   /// Takes the lock by `take`, and repairs what a former owner left incomplete.
   RegistryMutex::Taken lock_whole(const std::function<RegistryMutex::Taken()> & take);
@@ -216,8 +210,7 @@ private:
   void mark_blocks_of(EndpointEntry & entry) noexcept;
   void mark_blocks_in_hands() noexcept;
   void link_all_endpoints();
-  void link_all_of(Chain chain);
-  std::vector<uint32_t> endpoints_from_oldest(Chain chain) const;
+  void raise_all_changes() noexcept;
 
   PlatformPaths paths_;
   SharedMemory memory_;
@@ -230,6 +223,7 @@ private:
   RegistryMutex mutex_;
   uint32_t line_ = nothing;
   std::mutex hand_mutex_;
+  PhasesSeen phases_seen_;  ///< used under the lock
 };
 
 /// FNV-1a; equal for equal names in all processes.

@@ -23,7 +23,7 @@ Claim::~Claim() {
     return;
   }
   // Read before release(): the topic DSM may be freed after it
-  const uint32_t publisher = source_.publisher_slot();
+  const uint32_t publisher = source_.slot();
   const bool finished = source_.release(number_);
   subscription_.impl_->registry.tracer().note(
     TraceKind::release, subscription_.impl_->slot, number_, endpoint_in(info_.publisher));

@@ -32,12 +32,6 @@ void ReceptionCounts::count_expired() noexcept {
   entry_.counters.expired.fetch_add(1, std::memory_order_relaxed);
 }
 
-void ReceptionCounts::count_lost_replies(uint64_t count) noexcept {
-  if (entry_.role == EndpointRole::reply && count != 0) {
-    count_lost(count);
-  }
-}
-
 /// Adds to both words whose maximum lost_so_far() returns.
 void ReceptionCounts::count_lost(uint64_t count) noexcept {
   entry_.counters.lost.fetch_add(count, std::memory_order_relaxed);
@@ -45,8 +39,7 @@ void ReceptionCounts::count_lost(uint64_t count) noexcept {
 }
 
 bool ReceptionCounts::needs_settling() const noexcept {
-  return entry_.role != EndpointRole::reply &&
-         (unsettled_ || header_.displaced().hints != settled_displaced_);
+  return unsettled_ || header_.displaced().hints != settled_displaced_;
 }
 
 void ReceptionCounts::note_settled(uint64_t displaced) noexcept {

@@ -21,10 +21,6 @@ public:
   /// Undoes count_taken() for a record that could not be deserialized, and counts it as lost.
   void count_rejected(uint64_t bytes) noexcept;
   void count_expired() noexcept;
-  /// Counts lost replies other than displaced ones; no effect for other roles. A publisher numbers
-  /// its replies to all clients in one sequence, so a client counts its own one by one as it misses
-  /// them.
-  void count_lost_replies(uint64_t count) noexcept;
   /// Messages may be missing that no later message has revealed yet.
   void suspect_losses() noexcept { unsettled_ = true; }
   bool is_unsettled() const noexcept { return unsettled_; }

@@ -14,7 +14,7 @@ RecordFinder::RecordFinder(
   cluster_(cluster),
   header_(header),
   counts_(counts),
-  sources_(registry, cluster, header, entry) {}
+  sources_(registry, header, entry) {}
 
 bool RecordFinder::has_records() const noexcept {
   return !subscriber_queue::empty(header_) || backlog_.size() != 0 || has_to_resync();
@@ -49,13 +49,13 @@ std::optional<RecordFinder::Candidate> RecordFinder::next() {
       return std::nullopt;
     }
     // A resync scans all sources, so it finds this hint's record too. If earlier hints are missing,
-    // `resync` was set before this hint was pushed, but possibly after the check above. The first
-    // hint of a new source may overtake the matcher's `resync`, and with it the history of the
-    // source.
-    if (take_request_to_resync() || sources_.renew()) {
+    // `resync` was set before this hint was pushed, but possibly after the check above; or is set
+    // for a source that could not be mapped before.
+    Source * const source = sources_.find(*hint);
+    if (take_request_to_resync()) {
       resync(hint);
-    } else if (const std::optional<Candidate> candidate = candidate_of(*hint)) {
-      return candidate;
+    } else if (source != nullptr) {
+      return Candidate{source, {hint->number, true}};
     }
   }
 }
@@ -63,24 +63,12 @@ std::optional<RecordFinder::Candidate> RecordFinder::next() {
 std::optional<RecordFinder::Candidate> RecordFinder::next_of_backlog() {
   while (!backlog_.empty()) {
     const Source::Waiting oldest = backlog_.pop_oldest();
-    Source * const source = sources_.find(oldest.source, oldest.incarnation);
+    Source * const source = sources_.find(Hint{oldest.publisher, oldest.incarnation, 0});
     if (source != nullptr && oldest.number > source->taken()) {
-      return Candidate{source, oldest.number};
+      return Candidate{source, {oldest.number, false}};
     }
   }
   return std::nullopt;
-}
-
-std::optional<RecordFinder::Candidate> RecordFinder::candidate_of(const Hint & hint) noexcept {
-  Source * const source = sources_.find(hint.source, hint.source_incarnation);
-  if (source == nullptr) {
-    return std::nullopt;  // the source is gone, and so is its topic DSM
-  }
-  const std::optional<uint64_t> number = source->published_number(hint.number);
-  if (!number || *number <= source->noted() || source->is_given_up(*number)) {
-    return std::nullopt;  // a duplicate, or a hint of a former use of the source entry
-  }
-  return Candidate{source, *number};
 }
 
 void RecordFinder::resync_if_asked() {
@@ -99,8 +87,9 @@ void RecordFinder::resync(std::optional<Hint> popped) {
   sources_.renew();
   drain_queue(popped);
   found_.clear();
+  bool some_finished = false;
   for (Source & source : sources_) {
-    source.list_waiting(found_);
+    some_finished = source.list_waiting(found_) || some_finished;
   }
   std::stable_sort(found_.begin(), found_.end(), [](const auto & a, const auto & b) {
     return a.source_timestamp_ns < b.source_timestamp_ns;
@@ -109,7 +98,6 @@ void RecordFinder::resync(std::optional<Hint> popped) {
   // Count only records that no hint announced. Stale hints are not subtracted: a listener notified
   // of them finds fewer messages than arrivals, never more.
   const uint64_t announced = count_announced(found_);
-  counts_.count_lost_replies(announced_.size() - announced);
   counts_.suspect_losses();
   if (found_.size() > announced) {
     arrivals_by_resync_.fetch_add(found_.size() - announced, std::memory_order_relaxed);
@@ -117,7 +105,9 @@ void RecordFinder::resync(std::optional<Hint> popped) {
       notify_event_watchers(registry_, header_.process.load(std::memory_order_relaxed));
     }
   }
-  drop_beyond_depth();
+  if (drop_beyond_depth() || some_finished) {
+    cluster_.wake_reaper();  // to free topic DSMs
+  }
   if (!backlog_.empty()) {
     // A thread that checked after the hints were drained and before the backlog was filled may be
     // about to sleep.
@@ -128,9 +118,7 @@ void RecordFinder::resync(std::optional<Hint> popped) {
 void RecordFinder::drain_queue(std::optional<Hint> popped) {
   announced_.clear();
   for (; popped || (popped = subscriber_queue::pop(header_)); popped.reset()) {
-    if (const std::optional<Candidate> candidate = candidate_of(*popped)) {
-      announced_.emplace_back(candidate->source->index(), candidate->number);
-    }
+    announced_.push_back(popped->word());
   }
   std::sort(announced_.begin(), announced_.end());
   announced_.erase(std::unique(announced_.begin(), announced_.end()), announced_.end());
@@ -140,29 +128,28 @@ void RecordFinder::drain_queue(std::optional<Hint> popped) {
 uint64_t RecordFinder::count_announced(const std::vector<Source::Waiting> & found) const {
   return static_cast<uint64_t>(
     std::count_if(found.begin(), found.end(), [&](const Source::Waiting & waiting) {
-      return std::binary_search(
-        announced_.begin(), announced_.end(), std::pair(waiting.source, waiting.number));
+      const Hint hint{waiting.publisher, waiting.incarnation, waiting.number};
+      return std::binary_search(announced_.begin(), announced_.end(), hint.word());
     }));
 }
 
-void RecordFinder::drop_beyond_depth() {
+/// True if topic DSMs of gone publishers may have been waiting for what is dropped.
+bool RecordFinder::drop_beyond_depth() {
   bool some_finished = false;
   while (header_.keep_all == 0 && backlog_.size() > header_.depth) {
     const Source::Waiting oldest = backlog_.pop_oldest();
-    if (Source * const source = sources_.find(oldest.source, oldest.incarnation)) {
+    if (Source * const source = sources_.find(Hint{oldest.publisher, oldest.incarnation, 0})) {
       some_finished = source->skip(oldest.number) || some_finished;
     }
-    counts_.count_lost_replies(1);
   }
-  if (some_finished) {
-    cluster_.wake_reaper();  // to free topic DSMs
-  }
+  return some_finished;
 }
 
 void RecordFinder::settle() noexcept {
   if (!counts_.needs_settling()) {
     return;
   }
+  sources_.renew();  // one that is gone has nothing to settle
   // Load before the sources are checked: later displacements count next time.
   const uint64_t displaced = header_.displaced().hints;
   bool all = true;

@@ -21,7 +21,7 @@ class RecordFinder {
 public:
   struct Candidate {
     Source * source;
-    uint64_t number;
+    Source::Wanted wanted;
   };
 
   RecordFinder(
@@ -47,13 +47,11 @@ private:
   std::optional<Candidate> next_of_backlog();
   /// Resets `resync`. True if it was set: the caller must then call resync().
   bool take_request_to_resync() noexcept;
-  /// The record announced by a hint, or nothing if the hint is stale.
-  std::optional<Candidate> candidate_of(const Hint & hint) noexcept;
   /// `popped` is a hint taken from the queue and not used yet.
   void resync(std::optional<Hint> popped = std::nullopt);
   void drain_queue(std::optional<Hint> popped);
   uint64_t count_announced(const std::vector<Source::Waiting> & found) const;
-  void drop_beyond_depth();
+  bool drop_beyond_depth();
   Registry & registry_;
   const Cluster & cluster_;
   SubscriptionHeader & header_;
@@ -62,8 +60,7 @@ private:
   Backlog backlog_;
   std::atomic<uint64_t> arrivals_by_resync_{0};  ///< records found without a hint
   std::vector<Source::Waiting> found_;  ///< result of a resync; a member to reuse its memory
-  /// Source index and record number of each drained hint.
-  std::vector<std::pair<uint32_t, uint64_t>> announced_;
+  std::vector<uint64_t> announced_;     ///< words of the drained hints
 };
 
 }  // namespace manycore

@@ -2,60 +2,66 @@
 #include "transport/subscription/source_list.hpp"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
-#include "transport/queue/source_table.hpp"
-
 namespace manycore {
-namespace {
 
-constexpr uint64_t no_source_generation = UINT64_MAX;  ///< matches no `source_generation`
-
-}  // namespace
-
-bool SourceList::renew() {
-  const uint64_t generation = header_.source_generation.load(std::memory_order_acquire);
-  if (generation == seen_generation_) {
-    return false;
+void SourceList::renew() noexcept {
+  try {
+    if (publishers_.refresh()) {
+      rebuild();
+    }
+  } catch (const std::bad_alloc &) {
+    publishers_.forget_changes();  // the next call tries again
   }
-  seen_generation_ = generation;
-  bool has_new = false;
-  std::vector<Source> renewed;
-  auto known = sources_.begin();  // sorted by index, like the table
-  visit_source_table(cluster_, header_, [&](SourceEntry & entry, uint32_t index) {
-    // Load before the state: a use of the entry that begins in between is detected.
-    const uint32_t incarnation = entry.incarnation.load(std::memory_order_acquire);
-    if (entry.state.load(std::memory_order_acquire) != SourceState::active) {
-      return false;
-    }
-    known = at_or_after(known, index);
-    const bool is_known = known != sources_.end() && known->is(entry);
-    Source source = is_known ? *known : Source(registry_, entry, {index, incarnation}, entry_);
-    if (source) {
-      has_new = has_new || !is_known;
-      renewed.push_back(source);
-    } else {
-      seen_generation_ = no_source_generation;  // its cluster cannot be mapped at present
-    }
-    return false;
-  });
-  sources_ = std::move(renewed);
-  return has_new;
 }
 
-Source * SourceList::find(uint32_t index, uint32_t incarnation) noexcept {
-  const uint32_t low_bits = incarnation & Hint::incarnation_mask;
-  const auto found = at_or_after(sources_.begin(), index);
-  const bool is_there = found != sources_.end() && found->index() == index &&
-                        (found->incarnation() & Hint::incarnation_mask) == low_bits;
+void SourceList::rebuild() {
+  const bool lacked_some = std::exchange(lacks_some_, false);
+  std::vector<Source> renewed;
+  renewed.reserve(publishers_.all().size());
+  for (const Peer & publisher : publishers_.all()) {
+    const auto known = at_or_after(publisher.slot);
+    const bool is_known = known != sources_.end() && known->slot() == publisher.slot &&
+                          known->incarnation() == publisher.incarnation;
+    const Source source = is_known ? *known : Source(registry_, publisher, header_, entry_);
+    if (source) {
+      renewed.push_back(source);
+      if (lacked_some && !is_known) {
+        header_.resync.store(1, std::memory_order_seq_cst);
+      }
+    } else {
+      lacks_some_ = true;
+      publishers_.forget_changes();  // its cluster cannot be mapped at present
+    }
+  }
+  std::sort(renewed.begin(), renewed.end(), [](const Source & a, const Source & b) {
+    return a.slot() < b.slot();
+  });
+  sources_ = std::move(renewed);
+}
+
+Source * SourceList::find(const Hint & hint) noexcept {
+  if (Source * const known = find_known(hint)) {
+    return known;
+  }
+  renew();
+  return find_known(hint);
+}
+
+/// One whose slot has another owner may have the same low bits of the incarnation.
+Source * SourceList::find_known(const Hint & hint) noexcept {
+  const auto found = at_or_after(hint.publisher);
+  const bool is_there = found != sources_.end() &&
+                        hint.is_of(found->slot(), found->incarnation()) && found->is_current();
   return is_there ? &*found : nullptr;
 }
 
-std::vector<Source>::iterator SourceList::at_or_after(
-  std::vector<Source>::iterator from, uint32_t index) noexcept {
-  return std::lower_bound(from, sources_.end(), index, [](const Source & source, uint32_t wanted) {
-    return source.index() < wanted;
-  });
+std::vector<Source>::iterator SourceList::at_or_after(uint32_t slot) noexcept {
+  return std::lower_bound(
+    sources_.begin(), sources_.end(), slot,
+    [](const Source & source, uint32_t wanted) { return source.slot() < wanted; });
 }
 
 }  // namespace manycore

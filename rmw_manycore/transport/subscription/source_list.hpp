@@ -1,42 +1,44 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
-#include "transport/registry/registry.hpp"
 #include "transport/topic_dsm/source.hpp"
 
 namespace manycore {
 
-/// A subscription's copy of its source table. Used by one thread at a time (the subscription's
+/// The topic DSMs from which a subscription may take: those of its publishers that are there, and
+/// of closed ones that may hold messages for it. Used by one thread at a time (the subscription's
 /// mutex).
 class SourceList {
 public:
-  SourceList(
-    Registry & registry, Cluster & cluster, SubscriptionHeader & header,
-    EndpointEntry & entry) noexcept
-  : registry_(registry), cluster_(cluster), header_(header), entry_(entry) {}
+  SourceList(Registry & registry, SubscriptionHeader & header, EndpointEntry & entry)
+  : registry_(registry),
+    header_(header),
+    entry_(entry),
+    publishers_(registry, entry, Peers::Of::with_memory) {}
 
-  /// Updates the copy if the table changed. True if there is a new source.
-  bool renew();
-  /// Nullptr if the source is gone.
-  Source * find(uint32_t index, uint32_t incarnation) noexcept;
+  /// Updates the list if rows of the topic changed.
+  void renew() noexcept;
+  /// The source that a hint or a listed record names; looks at the rows if it is not known. Nullptr
+  /// if its topic DSM is gone.
+  Source * find(const Hint & hint) noexcept;
 
   std::vector<Source>::iterator begin() noexcept { return sources_.begin(); }
   std::vector<Source>::iterator end() noexcept { return sources_.end(); }
 
 private:
-  /// The first source at or after `from` whose index is at least `index`.
-  std::vector<Source>::iterator at_or_after(
-    std::vector<Source>::iterator from, uint32_t index) noexcept;
+  void rebuild();
+  Source * find_known(const Hint & hint) noexcept;
+  /// The first source whose slot is at least `slot`.
+  std::vector<Source>::iterator at_or_after(uint32_t slot) noexcept;
 
   Registry & registry_;
-  Cluster & cluster_;
   SubscriptionHeader & header_;
   EndpointEntry & entry_;
-  std::vector<Source> sources_;
-  uint64_t seen_generation_ = 0;
+  Peers publishers_;
+  bool lacks_some_ = false;  ///< whose cluster could not be mapped: their hints were passed over
+  std::vector<Source> sources_;  ///< ordered by slot; a slot has one
 };
 
 }  // namespace manycore

@@ -90,27 +90,26 @@ std::optional<Claim> Subscription::claim() {
     Source & source = *candidate->source;
     Source::View view;
     // Before the claim, after which the topic DSM may be freed.
-    const uint32_t publisher = source.publisher_slot();
-    const uint64_t traced = trace_endpoint(publisher, source.publisher_incarnation());
-    const Source::Claimed claimed = source.claim(candidate->number, view);
+    const uint32_t publisher = source.slot();
+    const uint64_t traced = trace_endpoint(publisher, source.incarnation());
+    const Source::Claimed claimed = source.claim(candidate->wanted, view);
     if (claimed.is_finished) {
       finished.add(publisher);
     }
     switch (claimed.result) {
       case Source::ClaimResult::gone:
         impl.counts.suspect_losses();
-        impl.counts.count_lost_replies(1);
         continue;
       case Source::ClaimResult::expired:
         impl.counts.count_expired();
-        impl.registry.tracer().note(TraceKind::expired, impl.slot, candidate->number, traced);
+        impl.registry.tracer().note(TraceKind::expired, impl.slot, view.number, traced);
         continue;
       case Source::ClaimResult::not_ours:
         continue;
       case Source::ClaimResult::claimed:
         break;
     }
-    Claim claim(*this, std::move(lock), source, candidate->number);
+    Claim claim(*this, std::move(lock), source, view.number);
     claim.data_ = view.data;
     claim.size_ = view.record->size_bytes;
     claim.info_.source_timestamp_ns =
@@ -121,7 +120,7 @@ std::optional<Claim> Subscription::claim() {
     claim.info_.publisher = source.publisher();
     claim.info_.correlation = view.record->correlation;
     claim.info_.from_this_process = source.publisher_process() == impl.entry.process;
-    impl.trace_claim(claim.info_, candidate->number);
+    impl.trace_claim(claim.info_, view.number);
     return claim;
   }
   return std::nullopt;
@@ -145,12 +144,12 @@ uint64_t Subscription::waiting() const noexcept { return impl_->finder.waiting()
 
 uint64_t Subscription::lost() const noexcept { return impl_->counts.lost(); }
 
-MatchedCount Subscription::matched() const { return matched_of(impl_->entry); }
+MatchedCount Subscription::matched() const { return impl_->matches.matched(); }
 
-IncompatibleCount Subscription::incompatible() const { return incompatible_of(impl_->entry); }
+IncompatibleCount Subscription::incompatible() const { return impl_->matches.incompatible(); }
 
 uint64_t Subscription::incompatible_types() const noexcept {
-  return impl_->entry.incompatible_types.load();
+  return impl_->matches.incompatible_types();
 }
 
 TimedCount Subscription::deadline_missed() const noexcept {
@@ -159,7 +158,7 @@ TimedCount Subscription::deadline_missed() const noexcept {
 }
 
 LivelinessCount Subscription::liveliness() const {
-  return liveliness_of(impl_->registry, impl_->entry);
+  return liveliness_of(impl_->registry, impl_->matches, impl_->entry.qos.liveliness_lease_ns);
 }
 
 void Subscription::Impl::trace_claim(const RecordInfo & info, uint64_t number) noexcept {

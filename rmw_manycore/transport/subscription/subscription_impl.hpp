@@ -2,6 +2,7 @@
 #pragma once
 
 #include "platform/handover_mutex.hpp"
+#include "transport/peers/matches.hpp"
 #include "transport/registry/membership.hpp"
 #include "transport/subscription/record_finder.hpp"
 #include "transport/subscription/subscription.hpp"
@@ -18,7 +19,8 @@ struct Subscription::Impl {
     cluster(registry_.clusters().at(entry.cluster)),
     header(*cluster.find<SubscriptionHeader>(entry.block.offset())),
     counts(entry, header),
-    finder(registry_, cluster, header, entry, counts) {}
+    finder(registry_, cluster, header, entry, counts),
+    matches(registry_, entry) {}
 
   void trace_claim(const RecordInfo & info, uint64_t number) noexcept;
   /// Called after each message. An executor takes only what is there, so it may never find out by a
@@ -36,6 +38,7 @@ struct Subscription::Impl {
   HandoverMutex mutex;  ///< held during the lifetime of a Claim
   ReceptionCounts counts;
   RecordFinder finder;
+  Matches matches;
 };
 
 }  // namespace manycore

@@ -29,4 +29,24 @@ inline LastPublished last_published(const TopicDsmHeader & dsm) noexcept {
   return published;
 }
 
+/// The newest message for the owner of a seat. Of replies, the number may be of a later one than
+/// the sequence number is, never of an earlier one.
+inline LastPublished last_published_for(const TopicDsmHeader & dsm, const Seat & seat) noexcept {
+  if (static_cast<EndpointRole>(dsm.role) != EndpointRole::reply) {
+    return last_published(dsm);
+  }
+  const uint64_t sequence = seat.replies.load(std::memory_order_seq_cst);
+  return {seat.last_reply.load(std::memory_order_seq_cst), sequence, true};
+}
+
+/// Number of messages that the owner of a seat has not taken, expired ones included.
+inline uint64_t owed_to(const TopicDsmHeader & dsm, const Seat & seat) noexcept {
+  const LastPublished published = last_published_for(dsm, seat);
+  if (seat.taken.load(std::memory_order_seq_cst) >= published.number) {
+    return 0;
+  }
+  const uint64_t accounted = seat.accounted.load(std::memory_order_acquire);
+  return published.sequence > accounted ? published.sequence - accounted : 1;
+}
+
 }  // namespace manycore

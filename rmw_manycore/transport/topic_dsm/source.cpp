@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "platform/clock.hpp"
-#include "transport/queue/displaced.hpp"
+#include "transport/queue/subscriber_queue.hpp"
 #include "transport/topic_dsm/last_published.hpp"
 #include "transport/topic_dsm/waiting_publisher.hpp"
 
@@ -26,35 +26,72 @@ void order(std::vector<Source::Waiting> & all, ptrdiff_t begin) {
 
 }  // namespace
 
-Source::Source(Registry & registry, SourceEntry & entry, Use use, EndpointEntry & subscription)
-: entry_(&entry),
-  index_(use.index),
-  incarnation_(use.incarnation),
-  noted_(entry.taken.load(std::memory_order_relaxed)),
+Source::Source(
+  Registry & registry, const Peer & publisher, SubscriptionHeader & header,
+  EndpointEntry & subscription)
+: row_(&registry.endpoints()[publisher.slot]),
+  slot_(publisher.slot),
+  incarnation_(publisher.incarnation),
+  reader_(endpoint_word(header.endpoint.load(), header.incarnation.load())),
+  reads_history_(
+    publisher.durability == Durability::transient_local &&
+    subscription.qos.durability == Durability::transient_local &&
+    subscription.role != EndpointRole::reply),
+  header_(&header),
   subscription_(&subscription) {
-  const SegmentRef ref{entry.topic_dsm.load(std::memory_order_relaxed)};
-  cluster_ = registry.clusters().find(ref.cluster());
+  cluster_ = registry.clusters().find(publisher.block.cluster());
   own_cluster_ = registry.clusters().find(subscription.cluster);
-  dsm_ = registry.clusters().find<TopicDsmHeader>(ref);
+  dsm_ = registry.clusters().find<TopicDsmHeader>(publisher.block);
 }
 
-bool Source::is_given_up(uint64_t number) const noexcept {
-  return subscription_->role == EndpointRole::reply &&
-         Displaced::covers(entry_->displaced, incarnation_, number);
-}
-
-std::optional<uint64_t> Source::published_number(uint64_t low_bits) noexcept {
-  std::optional<uint64_t> number;
-  entry_->reading.store(header_only, std::memory_order_seq_cst);
-  if (may_look()) {
-    const uint64_t latest = arrived().last();  // load once: it increases concurrently
-    number = Hint::full_number(low_bits, latest);
-    if (*number > latest) {
-      number.reset();
-    }
+/// Dekker with reclaim() and with the process that frees: `reading` is stored before `number`, and
+/// before the row is loaded, all seq_cst. So either the publisher sees the claim and leaves the
+/// bytes alone, or this reader sees that the number is gone.
+bool Source::begin_look(uint64_t word) noexcept {
+  header_->reading.store(word, std::memory_order_seq_cst);
+  if (!may_look()) {
+    return false;
   }
-  entry_->reading.store(no_record, std::memory_order_release);
-  return number;
+  meet();
+  return true;
+}
+
+/// seq_cst: the process that frees stores the row's state before it loads `reading`.
+bool Source::end_look() noexcept {
+  header_->reading.store(Reading::nothing, std::memory_order_seq_cst);
+  return row_->slot.state.load(std::memory_order_seq_cst) == SlotState::freeing && is_current();
+}
+
+bool Source::may_look() const noexcept {
+  return has_memory(row_->slot.state.load(std::memory_order_seq_cst)) &&
+         row_->slot.incarnation.load(std::memory_order_seq_cst) == incarnation_;
+}
+
+/// The seat stays this reader's while the subscription's row is live.
+void Source::meet() noexcept {
+  if (seat_ != nullptr) {
+    return;
+  }
+  seat_ = find_seat(*cluster_, *dsm_, reader_);
+  if (seat_ != nullptr && !reads_history_) {
+    noted_ = std::max(noted_, seat_->taken.load(std::memory_order_relaxed));
+    taken_ = std::max(taken_, noted_);
+  } else if (seat_ != nullptr && taken_ > seat_->taken.load(std::memory_order_relaxed)) {
+    seat_->taken.store(taken_, std::memory_order_seq_cst);  // of the history, without a seat
+  }
+}
+
+LastPublished Source::last_published() const noexcept {
+  return seat_ != nullptr ? last_published_for(*dsm_, *seat_) : manycore::last_published(*dsm_);
+}
+
+uint64_t Source::number_of(const Wanted & wanted) const noexcept {
+  if (!wanted.is_from_hint) {
+    return wanted.number;
+  }
+  const uint64_t latest = last();  // load once: it increases concurrently
+  const uint64_t number = Hint::full_number(wanted.number, latest);
+  return number <= latest ? number : no_record;
 }
 
 /// Dekker with retire(): `first` is loaded after `reading` is stored, both seq_cst. A generation
@@ -97,22 +134,28 @@ bool Source::is_expired(const RecordDescriptor & record) const noexcept {
          realtime_ns() - record.source_timestamp_ns.load(std::memory_order_relaxed) > lifespan_ns;
 }
 
-bool Source::may_look() const noexcept {
-  return entry_->state.load(std::memory_order_seq_cst) == SourceState::active &&
-         entry_->incarnation.load(std::memory_order_seq_cst) == incarnation_;
+/// A server counts the replies to all clients, so more than a period of them may follow one whose
+/// hint still waits, and its low bits then name another record. A look at all finds it.
+bool Source::is_misnamed(const Wanted & wanted, ClaimResult result) const noexcept {
+  return wanted.is_from_hint && subscription_->role == EndpointRole::reply &&
+         (result == ClaimResult::gone || result == ClaimResult::not_ours);
 }
 
-/// Dekker with reclaim(): `reading` is stored before `number` is loaded, both seq_cst, so either
-/// the publisher sees the claim and leaves the bytes alone, or this reader sees that the number is
-/// gone. The same holds for revoke() and the state of the source: the topic DSM is accessed only if
-/// the state is still `active` after the store.
-Source::Claimed Source::claim(uint64_t number, View & view) noexcept {
-  entry_->reading.store(number, std::memory_order_seq_cst);
-  if (!may_look()) {
-    entry_->reading.store(no_record, std::memory_order_release);
-    return {ClaimResult::not_ours, false};
+Source::Claimed Source::claim(const Wanted & wanted, View & view) noexcept {
+  if (!begin_look(Reading::of(hint_of(wanted.number)))) {
+    return {ClaimResult::not_ours, end_look()};
+  }
+  const uint64_t number = number_of(wanted);
+  const bool is_stale = number == no_record || (wanted.is_from_hint && number <= noted_);
+  if (is_stale || (seat_ == nullptr && !reads_history_)) {
+    return {ClaimResult::not_ours, end_look()};
   }
   const ClaimResult result = look_at(number, view);
+  view.number = number;
+  if (is_misnamed(wanted, result)) {
+    header_->resync.store(1, std::memory_order_seq_cst);
+    return {ClaimResult::not_ours, end_look()};
+  }
   return {result, result != ClaimResult::claimed && release(number)};
 }
 
@@ -144,34 +187,40 @@ Source::ClaimResult Source::look_at(uint64_t number, View & view) noexcept {
   return ClaimResult::claimed;
 }
 
-/// Stores `reading` last: once it is empty, the topic DSM may be freed. The publisher waits for
-/// `taken` only, so it is notified before that. `taken` is stored seq_cst: the publisher sets
-/// `writer_waits` before it loads `taken` again.
-bool Source::release(uint64_t number) noexcept {
-  if (number > entry_->taken.load(std::memory_order_relaxed)) {
-    entry_->taken.store(number, std::memory_order_seq_cst);
-  }
-  if (number > noted_) {
-    noted_ = number;
+/// The publisher waits for `taken` only, so it is notified before the look ends. `taken` is stored
+/// seq_cst: the publisher sets `writer_waits` before it loads `taken` again.
+bool Source::note_taken(uint64_t number) noexcept {
+  taken_ = std::max(taken_, number);
+  noted_ = std::max(noted_, number);
+  meet();
+  if (seat_ != nullptr && number > seat_->taken.load(std::memory_order_relaxed)) {
+    seat_->taken.store(number, std::memory_order_seq_cst);
   }
   notify_waiting_publisher(*dsm_);
   const bool finished = is_finished();
-  if (finished) {  // last access to the topic DSM
-    const LastPublished published = last_published(*dsm_);
+  if (finished) {
+    const LastPublished published = last_published();
     if (published.exact) {
       count_missing(published.sequence);
     }
   }
-  // seq_cst: revoke() stores the state before it loads `reading`.
-  entry_->reading.store(no_record, std::memory_order_seq_cst);
-  return finished || entry_->state.load(std::memory_order_seq_cst) == SourceState::revoked;
+  return finished;
+}
+
+bool Source::release(uint64_t number) noexcept {
+  const bool is_finished = note_taken(number);
+  return end_look() || is_finished;
 }
 
 bool Source::skip(uint64_t number) noexcept {
-  entry_->reading.store(header_only, std::memory_order_seq_cst);
-  const bool is_over = may_look() && release(number);
-  entry_->reading.store(no_record, std::memory_order_release);
-  return is_over;
+  return begin_look(Reading::header_only(slot_, incarnation_)) ? release(number) : end_look();
+}
+
+uint64_t Source::last() const noexcept {
+  if (subscription_->role == EndpointRole::reply) {
+    return seat_ != nullptr ? seat_->last_reply.load(std::memory_order_seq_cst) : no_record;
+  }
+  return arrived().last();
 }
 
 /// Pins the generation, then one record after the other in it, so a reader that is stopped in a
@@ -185,84 +234,90 @@ void Source::scan(
   if (first == 0 || first > last) {
     return;
   }
-  entry_->reading.store(whole_generation | first, std::memory_order_seq_cst);
+  header_->reading.store(Reading::generation(hint_of(first)), std::memory_order_seq_cst);
   const bool is_open = generation.first.load(std::memory_order_seq_cst) == first;
   const Descriptors descriptors = is_open ? descriptors_of(generation) : Descriptors{};
   for (uint64_t i = 0; i < descriptors.count; ++i) {
     RecordDescriptor & record = descriptors.begin[i];
     const uint64_t number = record.number.load(std::memory_order_relaxed);
-    if (number <= noted_ || number > last || is_given_up(number) || !arrived.has(number)) {
+    if (number <= noted_ || number > last || !arrived.has(number)) {
       continue;
     }
-    entry_->reading.store(number, std::memory_order_seq_cst);
+    header_->reading.store(Reading::of(hint_of(number)), std::memory_order_seq_cst);
     if (record.number.load(std::memory_order_seq_cst) == number && is_for_us(record)) {
       out.push_back(
-        {record.source_timestamp_ns.load(std::memory_order_relaxed), number, index_, incarnation_});
+        {record.source_timestamp_ns.load(std::memory_order_relaxed), number, slot_, incarnation_});
     }
   }
 }
 
-void Source::list_waiting(std::vector<Waiting> & out) noexcept {
+bool Source::list_waiting(std::vector<Waiting> & out) noexcept {
   const auto own_part = static_cast<ptrdiff_t>(out.size());
-  entry_->reading.store(header_only, std::memory_order_seq_cst);
-  if (may_look()) {
-    // Most sources have no new record: a subscription resyncs for each publisher that joins.
-    const transfer::Arrived arrived = this->arrived();
-    if (const uint64_t last = arrived.last(); last > noted_) {
-      for (const GenerationEntry & generation : dsm_->generations) {
-        scan(generation, arrived, last, out);
-      }
-      noted_ = last;
-    }
+  if (!begin_look(Reading::header_only(slot_, incarnation_))) {
+    return end_look();
   }
-  entry_->reading.store(no_record, std::memory_order_release);
+  // Most sources have no new record: a subscription resyncs for each publisher that leaves.
+  const uint64_t last = this->last();
+  if (last > noted_ && (seat_ != nullptr || reads_history_)) {
+    for (const GenerationEntry & generation : dsm_->generations) {
+      scan(generation, arrived(), last, out);
+    }
+    noted_ = last;
+  }
   order(out, own_part);
+  const bool finished = is_finished();
+  return end_look() || finished;
 }
 
-/// Sequence numbers count the replies to all clients; see ReceptionCounts::count_lost_replies().
 void Source::count_missing(uint64_t last_sequence) noexcept {
-  const uint64_t missing = account_for(last_sequence);
-  if (missing != 0 && static_cast<EndpointRole>(dsm_->role) != EndpointRole::reply) {
+  if (const uint64_t missing = account_for(last_sequence); missing != 0) {
     subscription_->counters.lost.fetch_add(missing, std::memory_order_relaxed);
   }
 }
 
+/// Without a seat the history is read, whose losses are not counted.
 uint64_t Source::account_for(uint64_t last_sequence) noexcept {
-  const uint64_t before = entry_->accounted.load(std::memory_order_relaxed);
+  const uint64_t before =
+    seat_ == nullptr ? UINT64_MAX : seat_->accounted.load(std::memory_order_relaxed);
   if (last_sequence <= before) {
     return 0;
   }
-  entry_->accounted.store(last_sequence, std::memory_order_relaxed);
+  seat_->accounted.store(last_sequence, std::memory_order_relaxed);
   return last_sequence - before;
 }
 
-Source::Settled Source::settle() noexcept {
-  Settled settled = Settled::no;
-  entry_->reading.store(header_only, std::memory_order_seq_cst);
-  if (may_look()) {
-    const LastPublished published = last_published(*dsm_);
-    const std::optional<uint64_t> displaced = Displaced::read(entry_->displaced, incarnation_);
-    const transfer::Arrived arrived = this->arrived();
-    const uint64_t known =
-      displaced ? std::max(noted_, Hint::full_number(*displaced, arrived.last())) : noted_;
-    if (published.exact && arrived.is_settled(published.number, known)) {
-      count_missing(published.sequence);
-      const bool was_finished = is_finished();
-      // Records counted as lost must not be found by a later scan.
-      const bool is_over = release(published.number);
-      // Revoked meanwhile: this look may have stood in a sweeper's way.
-      const bool is_revoked = entry_->state.load(std::memory_order_seq_cst) == SourceState::revoked;
-      settled = is_over && (!was_finished || is_revoked) ? Settled::finished : Settled::yes;
-    }
-  }
-  entry_->reading.store(no_record, std::memory_order_release);
-  return settled;
+/// True if the hints of all records published before this call have been pushed and popped, or
+/// displaced. A publisher pushes to its own cluster inside its phase, and no hint is left.
+bool Source::has_announced_all() const noexcept {
+  return cluster_ == own_cluster_ && dsm_->phase.load(std::memory_order_seq_cst) % 2 == 0 &&
+         subscriber_queue::empty(*header_);
 }
 
+Source::Settled Source::settle() noexcept {
+  if (!begin_look(Reading::header_only(slot_, incarnation_))) {
+    return end_look() ? Settled::finished : Settled::yes;  // the process that frees counts
+  }
+  if (seat_ == nullptr) {
+    const bool is_waited_for = end_look();
+    return is_waited_for ? Settled::finished : Settled::yes;
+  }
+  const bool was_finished = is_finished();
+  const LastPublished published = last_published();
+  const uint64_t known = has_announced_all() ? published.number : noted_;
+  const bool is_settled = published.exact && arrived().is_settled(published.number, known);
+  bool is_over = false;
+  if (is_settled) {
+    count_missing(published.sequence);
+    is_over = note_taken(published.number) && !was_finished;
+  }
+  is_over = end_look() || is_over;
+  return is_over ? Settled::finished : is_settled ? Settled::yes : Settled::no;
+}
+
+/// What is owed is what the process that frees looks at.
 bool Source::is_finished() const noexcept {
-  return dsm_->orphan.load(std::memory_order_acquire) != 0 &&
-         entry_->taken.load(std::memory_order_relaxed) >=
-           dsm_->last.load(std::memory_order_acquire);
+  return row_->slot.state.load(std::memory_order_acquire) != SlotState::live &&
+         (seat_ == nullptr || owed_to(*dsm_, *seat_) == 0);
 }
 
 }  // namespace manycore

@@ -52,7 +52,7 @@ bool TopicDsmWriter::retire(Generation & old) {
     // reader list after the store, so that a reader that has just joined is checked as well.
     old.entry->first.store(0, std::memory_order_seq_cst);
   }
-  readers_.refresh();
+  readers_.refresh(start());
   // A reader that looked for a record of a younger generation, closed since, may have arrived at
   // this one. One that looks at the header only keeps none.
   old.is_unread = !readers_.is_any_pinned(old.first, current_.first - 1);

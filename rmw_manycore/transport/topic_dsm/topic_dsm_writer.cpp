@@ -5,7 +5,6 @@
 
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
-#include "transport/queue/displaced.hpp"
 #include "transport/registry/odd_phase.hpp"
 #include "transport/transfer/transfer.hpp"
 
@@ -73,13 +72,13 @@ TopicDsmWriter::TopicDsmWriter(Registry & registry, Cluster & cluster, EndpointE
   cluster_(cluster),
   endpoint_(endpoint),
   dsm_(*cluster.find<TopicDsmHeader>(endpoint.block.offset())),
-  readers_(registry, cluster, dsm_),
+  readers_(registry, cluster, dsm_, endpoint),
   current_(Generation::view(cluster, dsm_.generations[0])),
   pinned_in_slot_(current_.count, no_record) {}
 
 void TopicDsmWriter::enter() noexcept {
   OddPhase::begin(dsm_.phase);
-  readers_.begin_phase();
+  readers_.begin_phase(start());
 }
 
 void TopicDsmWriter::leave() noexcept { OddPhase::end(dsm_.phase); }
@@ -96,19 +95,20 @@ Readers TopicDsmWriter::readers_of(const RecordDescriptor & record) const noexce
                                                : readers_.all();
 }
 
-/// KEEP_LAST readers want the last `depth` messages. Replies to one client have no sequence of
-/// their own, so a client wants each reply to it whose hint was not displaced from its queue.
+/// KEEP_LAST readers want the last `depth` messages; a client, of those to it.
 bool TopicDsmWriter::wants(
   const Reader & reader, uint64_t number, const RecordDescriptor & record) const noexcept {
-  if (reader.source->taken.load(std::memory_order_seq_cst) >= number || !reader.active()) {
+  if (reader.seat == nullptr || reader.seat->taken.load(std::memory_order_seq_cst) >= number) {
     return false;
   }
-  const bool keeps_all = reader.subscription->keep_all != 0;
-  if (endpoint_.role == EndpointRole::reply) {
-    return keeps_all ||
-           !Displaced::covers(reader.source->displaced, reader.source_incarnation, number);
+  if (reader.subscription->keep_all != 0) {
+    return true;
   }
-  return keeps_all || is_among_last(reader.subscription->depth, record);
+  if (is_of_replies()) {
+    return record.publication_sequence_number + reader.subscription->depth >
+           reader.seat->replies.load(std::memory_order_relaxed);
+  }
+  return is_among_last(reader.subscription->depth, record);
 }
 
 bool TopicDsmWriter::is_wanted(uint64_t number, const RecordDescriptor & record) const noexcept {
@@ -118,7 +118,7 @@ bool TopicDsmWriter::is_wanted(uint64_t number, const RecordDescriptor & record)
     realtime_ns() - record.source_timestamp_ns.load(std::memory_order_relaxed) > lifespan) {
     return false;
   }
-  if (dsm_.transient_local != 0 && is_among_last(dsm_.depth, record)) {
+  if (dsm_.transient_local != 0 && !is_of_replies() && is_among_last(dsm_.depth, record)) {
     return true;
   }
   for (const Reader & reader : readers_of(record)) {
@@ -153,7 +153,7 @@ TopicDsmWriter::Reclaim TopicDsmWriter::reclaim(uint64_t number, bool force) {
     // reader list after the store, so that a reader that has just joined is checked as well.
     record.number.store(no_record, std::memory_order_seq_cst);
     pinned_in_slot_[number & (current_.count - 1)] = number;  // until seen unpinned
-    readers_.refresh();
+    readers_.refresh(start());
     readers_.require_all(endpoint_.topic);
   }
   return readers_.is_pinned(number) ? Reclaim::pinned : Reclaim::freed;
@@ -184,6 +184,8 @@ void TopicDsmWriter::wait_for_progress(uint64_t number) {
   }
   const uint32_t seen = dsm_.progress.load(std::memory_order_seq_cst);
   dsm_.writer_waits.store(1, std::memory_order_seq_cst);
+  // Dekker with a reader that leaves: its row is closed before `writer_waits` is looked at.
+  readers_.refresh(start());
   if (is_owed(number)) {
     registry_.tracer().note(TraceKind::blocked, dsm_.endpoint.load(), number);
     leave();  // no other process has to wait for this publisher's phase meanwhile
@@ -317,6 +319,26 @@ void TopicDsmWriter::abandon_room() noexcept {
   blocks_.pop_back();
 }
 
+/// Clients count their replies by themselves: each has a sequence of its own.
+void TopicDsmWriter::number_reply(RecordDescriptor & record) const noexcept {
+  record.publication_sequence_number = 0;
+  for (const Reader & client : readers_.with_gid(record.correlation.client)) {
+    if (client.seat != nullptr) {
+      record.publication_sequence_number = client.seat->replies.load(std::memory_order_relaxed) + 1;
+    }
+  }
+}
+
+/// From here on the reply is published for its client, whose look goes up to `last_reply`.
+void TopicDsmWriter::announce_reply(const RecordDescriptor & record) const noexcept {
+  for (const Reader & client : readers_.with_gid(record.correlation.client)) {
+    if (client.seat != nullptr) {
+      client.seat->last_reply.store(next_number_, std::memory_order_release);
+      client.seat->replies.store(record.publication_sequence_number, std::memory_order_release);
+    }
+  }
+}
+
 uint64_t TopicDsmWriter::commit(
   uint64_t size_bytes, int64_t source_timestamp_ns, uint64_t publication_sequence_number,
   const Correlation & correlation) {
@@ -330,18 +352,25 @@ uint64_t TopicDsmWriter::commit(
   record.source_timestamp_ns.store(source_timestamp_ns, std::memory_order_relaxed);
   record.publication_sequence_number = publication_sequence_number;
   record.correlation = correlation;
+  if (is_of_replies()) {
+    number_reply(record);
+  }
   // Release: a reader that loads the number also sees the bytes and the fields above.
   record.number.store(next_number_, std::memory_order_release);
-  last_sequence_number_ = publication_sequence_number;
+  if (is_of_replies()) {
+    announce_reply(record);
+  }
   const uint64_t skipped = next_number_ - publication_sequence_number;
   dsm_.skipped_before.store(skipped, std::memory_order_relaxed);
-  // Dekker with a late joiner: its matcher activates the reader entry before it loads `last`.
+  // Dekker with a late joiner: its row is live before it loads `last`.
   dsm_.last.store(next_number_, std::memory_order_seq_cst);
   dsm_.skipped_after.store(skipped, std::memory_order_release);
-  readers_.refresh();
+  readers_.refresh(start());
   if (!readers_.is_complete()) {
-    readers_.request_resyncs();
+    readers_.serve_without_list(start());
   }
+  last_number_ = next_number_;
+  last_sequence_number_ = publication_sequence_number;
   return next_number_++;
 }
 

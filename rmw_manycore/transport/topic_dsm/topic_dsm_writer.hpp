@@ -58,6 +58,13 @@ private:
   bool wants(
     const Reader & reader, uint64_t number, const RecordDescriptor & record) const noexcept;
   bool is_among_last(uint32_t depth, const RecordDescriptor & record) const noexcept;
+  bool is_of_replies() const noexcept { return endpoint_.role == EndpointRole::reply; }
+  /// Where readers start that are found from now on, until the next commit has ended.
+  SeatStart start() const noexcept {
+    return {last_number_, is_of_replies() ? 0 : last_sequence_number_};
+  }
+  void number_reply(RecordDescriptor & record) const noexcept;
+  void announce_reply(const RecordDescriptor & record) const noexcept;
   bool is_wanted(uint64_t number, const RecordDescriptor & record) const noexcept;
   bool is_owed(uint64_t number) const noexcept;
   Reclaim reclaim(uint64_t number, bool force);
@@ -108,6 +115,7 @@ private:
   std::vector<uint64_t> pinned_in_slot_;
   uint64_t cursor_ = 0;  ///< offset of the next free byte in the data area
   uint64_t next_number_ = 1;
+  uint64_t last_number_ = no_record;
   uint64_t last_sequence_number_ = 0;
   int64_t blocked_until_ns_ = 0;
   /// Value of `changes` during a hold of the registry lock that was waited for in vain.

@@ -21,16 +21,15 @@ bool has_movers(Registry & registry, uint32_t cluster) {
   return false;
 }
 
-/// True if a record that the source has not taken is in the landing, announced or not. The topic
-/// DSM has one generation.
+/// True if a record that the owner of the seat has not taken is in the landing, announced or not.
+/// The topic DSM has one generation.
 bool has_arrived(
-  const Cluster & cluster, const TopicDsmHeader & dsm, const Landing & landing,
-  const SourceEntry & source) {
+  const Cluster & cluster, const TopicDsmHeader & dsm, const Landing & landing, const Seat & seat) {
   const GenerationEntry & only = dsm.generations[0];
   const uint32_t count = only.descriptor_count.load();
   const auto * const descriptors =
     cluster.find<RecordDescriptor>(only.offset.load(), uint64_t{count} * sizeof(RecordDescriptor));
-  const uint64_t taken = source.taken.load(std::memory_order_acquire);
+  const uint64_t taken = seat.taken.load(std::memory_order_acquire);
   for (uint32_t i = 0; descriptors != nullptr && i < count; ++i) {
     const uint64_t number = descriptors[i].number.load(std::memory_order_acquire);
     if (number > taken && number <= landing.arrived() && landing.has(number)) {
@@ -46,7 +45,7 @@ bool has_arrived(
 /// gone.
 bool can_arrive(
   Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm,
-  SubscriptionHeader & subscription, uint32_t receiver, const SourceEntry & source) {
+  SubscriptionHeader & subscription, uint32_t receiver, const Seat & seat) {
   const Cluster * const to = static_cast<Transfer>(dsm.transfer) == Transfer::session
                                ? registry.map_cluster(receiver)
                                : nullptr;
@@ -54,7 +53,7 @@ bool can_arrive(
   if (!landing || has_movers(registry, cluster.id())) {
     return true;
   }
-  if (!has_arrived(cluster, dsm, landing, source)) {
+  if (!has_arrived(cluster, dsm, landing, seat)) {
     return false;
   }
   subscription.resync.store(1, std::memory_order_seq_cst);

@@ -107,15 +107,23 @@ void retire(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) no
   }
 }
 
-void take_up_retired(
+bool has_room(const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver) noexcept {
+  return static_cast<bool>(Landing::of(cluster, dsm, receiver));
+}
+
+bool take_up_retired(
   const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver,
   BlockInHand & hand) noexcept {
   LandingTable * const table = landing_table(cluster, dsm);
-  if (
-    table != nullptr && table->retired[receiver.id() - 1].load() != 0 &&
-    table->landings[receiver.id() - 1].load() == 0) {
+  const bool is_retired = table != nullptr && table->retired[receiver.id() - 1].load() != 0 &&
+                          table->landings[receiver.id() - 1].load() == 0;
+  if (is_retired && dsm.phase.load(std::memory_order_seq_cst) % 2 != 0) {
+    return false;
+  }
+  if (is_retired) {
     take_up(*table, dsm, receiver, hand);
   }
+  return true;
 }
 
 bool take_up_all(

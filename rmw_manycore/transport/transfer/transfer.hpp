@@ -18,7 +18,7 @@ namespace manycore::transfer {
 /// Needs no lock. Throws Error{unsupported} for a publisher whose QoS a transfer cannot keep.
 Transfer kind_of(const TopicEntry * configured, const EndpointSpec & spec, EndpointKind kind);
 
-/// Room for a publisher's records in the cluster of a subscription that is being matched with it.
+/// Room for a publisher's records in the cluster of a subscription that it is matched with.
 class MatchRoom {
 public:
   /// Changes nothing. `hand`: nullptr = empty. Throws Error{no_space} for a ninth session, with the
@@ -39,19 +39,13 @@ private:
   LandingTable * table_;  ///< nullptr = nothing to do
 };
 
+/// True where publisher's records reach `receiver` in room of their own, and have it.
+bool has_room(const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver) noexcept;
 /// Once `receiver` has no reader left: no thread finds the publisher's room there from here on.
 void retire(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept;
-/// Calls retire() unless `is_read()`, which is asked for transferred topics only.
-template<typename IsRead>
-void retire_unless(
-  const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver, IsRead is_read) {
-  if (dsm.transfer != static_cast<uint8_t>(Transfer::dsm) && !is_read()) {
-    retire(cluster, dsm, receiver);
-  }
-}
-/// Takes up what was retired in `receiver`, if it was: the publisher and all movers have been seen
-/// out of their phases since.
-void take_up_retired(
+/// Takes up what was retired in `receiver`, if it was and the publisher is out of its phase; all
+/// movers have been seen out of theirs since. False if it was not taken up.
+bool take_up_retired(
   const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver,
   BlockInHand & hand) noexcept;
 
@@ -62,7 +56,7 @@ void end(Clusters & clusters, const Cluster & cluster, TopicDsmHeader & dsm) noe
 /// subscription is set to look for. Throws ClusterUnmappable.
 bool can_arrive(
   Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm,
-  SubscriptionHeader & subscription, uint32_t receiver, const SourceEntry & source);
+  SubscriptionHeader & subscription, uint32_t receiver, const Seat & seat);
 /// Takes up what a topic DSM to which no reference leads any more has in other clusters, while its
 /// generations say how large that is. False once the hand is full. Throws ClusterUnmappable.
 bool take_up_all(

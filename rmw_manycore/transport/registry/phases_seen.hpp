@@ -1,0 +1,31 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+
+namespace manycore {
+
+/// What one process knows of publishers that may still push to a closed subscription: a publisher
+/// that was seen outside its phase once, or in another one, does not find the subscription any
+/// more. Kept between attempts to free it, so publishers that are busy need not be outside at a
+/// time.
+class PhasesSeen {
+public:
+  /// Endpoints are named by endpoint_word(). `phase`: the publisher's, loaded now.
+  bool is_out(uint64_t subscription, uint64_t publisher, uint64_t phase) {
+    uint64_t & seen = seen_[subscription].try_emplace(publisher, phase).first->second;
+    if (phase % 2 == 0 || phase != seen) {
+      seen = was_out;
+    }
+    return seen == was_out;
+  }
+  void forget(uint64_t subscription) noexcept { seen_.erase(subscription); }
+
+private:
+  static constexpr uint64_t was_out = UINT64_MAX - 1;  ///< even, so no phase that was noted
+
+  std::unordered_map<uint64_t, std::unordered_map<uint64_t, uint64_t>> seen_;
+};
+
+}  // namespace manycore
