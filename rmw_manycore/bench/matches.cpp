@@ -1,7 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 // How much do many publishers and subscriptions of one topic slow each other down?
 //
-//   matches endpoints=N iterations=N measure=create|close|depart|retire|beside|publish depth=N
+//   matches endpoints=N iterations=N measure=create|close|depart|retire|beside|other|publish
+//   depth=N
 //
 // With `endpoints` endpoints of each kind, one process prints how long it takes
 //   create   to create one more subscription,
@@ -12,6 +13,7 @@
 //            taken; all publishers are closed first,
 //   beside   to create a publisher of another topic, from a second thread, while the first creates
 //            and closes all of them,
+//   other    to create a publisher of another topic, with nothing beside,
 //   publish  to publish; nothing is taken, so with a small depth each queue is full.
 #include <atomic>
 #include <memory>
@@ -131,6 +133,17 @@ std::vector<int64_t> beside(Node & node, const Arguments & arguments) {
   return samples_ns;
 }
 
+std::vector<int64_t> other(Node & node, const Arguments & arguments) {
+  const Endpoints endpoints(node, arguments.number("endpoints"), arguments.number("depth"));
+  std::vector<int64_t> samples_ns;
+  for (size_t i = 0; i < arguments.number("iterations"); ++i) {
+    std::unique_ptr<Publisher> publisher;
+    samples_ns.push_back(duration_ns(
+      [&] { publisher = std::make_unique<Publisher>(node, "/other", reliable_qos(1)); }));
+  }
+  return samples_ns;
+}
+
 std::vector<int64_t> publish(Node & node, const Arguments & arguments) {
   const size_t depth = arguments.number("depth");
   const Endpoints endpoints(node, arguments.number("endpoints"), depth);
@@ -157,6 +170,7 @@ int main(int argc, char ** argv) {
       : measure == "depart" ? depart(node, arguments)
       : measure == "retire" ? retire(node, arguments)
       : measure == "beside" ? beside(node, arguments)
+      : measure == "other"  ? other(node, arguments)
                             : publish(node, arguments));
   });
 }

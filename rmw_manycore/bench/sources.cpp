@@ -5,7 +5,8 @@
 //
 // Prints how long a subscription takes to resync with all its publishers, as it does once hints may
 // be missing. With `news`, each publisher has published a message since the last resync. Also
-// prints, as `match_bytes`, the SMEM that the matches of as many publishers and subscriptions take.
+// prints, as `match_bytes`, the SMEM that the matches of as many publishers and subscriptions take,
+// once each publisher has published.
 #include <memory>
 #include <vector>
 
@@ -57,6 +58,9 @@ uint64_t match_bytes(Process & process, const Cluster & cluster, size_t count) {
   const auto used_with = [&](const std::string & published, const std::string & subscribed) {
     const auto publishers = Topic(process, published, 1).publishers(count);
     const auto subscriptions = Topic(process, subscribed, 1).subscriptions(count);
+    for (const auto & publisher : publishers) {
+      publish(*publisher);  // gives each reader a seat
+    }
     return cluster.used_bytes();
   };
   const uint64_t apart = used_with("/one", "/other");

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.scale import (
+    churn,
     clients,
     clock,
     composed,
     crowd,
     endpoints,
     history,
-    holds,
     nodes,
     sim_time,
     sources,
@@ -25,7 +25,7 @@ PARTS = (
     endpoints,
     sources,
     history,
-    holds,
+    churn,
     clock,
     sim_time,
     clients,

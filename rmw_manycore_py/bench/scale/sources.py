@@ -61,6 +61,6 @@ GOALS = (
         )
         for news in NEWS.values()
     ),
-    Goal(BYTES, at_count(INSIDE.name, PUBLISHERS[-1], "publishers"), "within", 200),
+    Goal(BYTES, at_count(INSIDE.name, PUBLISHERS[-1], "publishers"), "within", 100),
 )
 PLACEMENT = "publishers: all in one process on the first"
