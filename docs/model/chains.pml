@@ -1,14 +1,13 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does a new endpoint that walks along its topic's chain without the registry lock find
- * each older endpoint that stays, even if the endpoint it has reached leaves?
+ * Question: does a process that walks along a topic's chain without the registry lock, from the
+ * bucket on, find each endpoint that was there before and stays, though others leave and come where
+ * it stands, and an owner of the lock dies?
  *
- * Follows Registry::for_each_older, next_of, link_endpoint, unlink_endpoint, Table::take and the
- * chains of Registry::repair. The new endpoint and the oldest one stay; those in between leave
- * under the lock, and their slots are reused in front of the same chain or in another one. The
- * owner of the lock is killed at any step, and the next owner repairs. Only one process stores at a
- * time, and the walk only loads, so x86's store buffers have no effect: shared words are plain
- * variables.
+ * Publishers, subscriptions and receive threads walk whenever `changes` moved. The bucket is where
+ * they begin and go back to. A repair may therefore never empty a bucket: it stores the links from the
+ * oldest endpoint on, and the bucket last. Each link then leads to the endpoint's older neighbours at
+ * any moment, and the bucket to what the dead owner left, which is whole.
  *
  * RUN MOVES=1
  * RUN MOVES=2 (long)
@@ -18,12 +17,15 @@
  * BUG 4 (reversed): incarnation not incremented when the slot is reused
  * BUG 5: a repair links by slot, not by age
  * BUG 6 (reversed): where an endpoint has left, the walk continues with the new incarnation of its slot
+ * BUG 7: a repair empties the bucket first
+ * BUG 8: a repair stores the bucket before the links
  */
-#define OWN 0
+#define YOUNGEST 0
 #define OLDEST 3
 #define STRANGER 4        /* alone in the other chain */
 #define SLOTS 5
 #define NOTHING 5
+#define BUCKET 5          /* where a walk begins */
 
 bool live[SLOTS];
 byte incarnation[SLOTS];
@@ -111,11 +113,27 @@ inline relink(i) {
   behind[chain[i]] = i
 }
 
-/* The next owner of the lock stores all links, from the oldest endpoint on, and the buckets last. */
+/* The next owner of the lock stores all links, from the oldest endpoint on. */
 proctype Repairer() {
   byte i, o, behind[2];
   killed -> behind[0] = NOTHING;
   behind[1] = NOTHING;
+#if BUG == 7
+  first[0] = NOTHING;
+  first[1] = NOTHING;
+#endif
+#if BUG == 8
+  d_step {
+    for (o : 1 .. last_order) {
+      for (i : 0 .. SLOTS - 1) {
+        if
+        :: live[i] && order[i] == o -> first[chain[i]] = i
+        :: else
+        fi
+      }
+    }
+  };
+#endif
 #if BUG == 5
   for (i : 0 .. SLOTS - 1) {
     if
@@ -142,21 +160,21 @@ proctype Killer() {
 }
 
 inline read_next() {
-  read = next[slot[at]];
+  read = (at == 0 -> first[0] : next[slot[at]]);
 #if BUG != 1
   if
-  :: live[slot[at]] -> is_astray = (incarnation[slot[at]] != mine[at])
+  :: at == 0 -> is_astray = false
+  :: at != 0 && live[slot[at]] -> is_astray = (incarnation[slot[at]] != mine[at])
   :: else -> is_astray = true
   fi
 #endif
 }
 
-/* To the last endpoint of the path that has not left; its own never leaves. */
+/* Goes back to the last endpoint of the path that has not left, or to the bucket. */
 proctype Walker() {
-  byte slot[SLOTS], mine[SLOTS], at, read, found, of_found;
+  byte slot[SLOTS + 1], mine[SLOTS + 1], at, read, found, of_found;
   bool is_astray, visited[SLOTS];
-  slot[0] = OWN;
-  mine[0] = incarnation[OWN];
+  slot[0] = BUCKET;
   do
   :: read_next();
      if
@@ -166,7 +184,7 @@ proctype Walker() {
      :: is_astray -> at--
 #endif
      :: !is_astray && read == NOTHING ->
-        assert(visited[OLDEST] && (visited[1] || left[1]) && (visited[2] || left[2]));
+        assert(visited[YOUNGEST] && visited[OLDEST] && (visited[1] || left[1]) && (visited[2] || left[2]));
         break
      :: !is_astray && read != NOTHING ->
         found = read;
@@ -189,9 +207,9 @@ proctype Walker() {
 init {
   atomic {
     /* From the youngest to the oldest endpoint, deliberately not in slot order. */
-    first[0] = OWN; next[OWN] = 2; next[2] = 1; next[1] = OLDEST; next[OLDEST] = NOTHING;
+    first[0] = YOUNGEST; next[YOUNGEST] = 2; next[2] = 1; next[1] = OLDEST; next[OLDEST] = NOTHING;
     first[1] = STRANGER; next[STRANGER] = NOTHING; chain[STRANGER] = 1;
-    order[OLDEST] = 1; order[STRANGER] = 2; order[1] = 3; order[2] = 4; order[OWN] = 5;
+    order[OLDEST] = 1; order[STRANGER] = 2; order[1] = 3; order[2] = 4; order[YOUNGEST] = 5;
     last_order = 5;
     live[0] = true; live[1] = true; live[2] = true; live[3] = true; live[4] = true;
     run Changer();

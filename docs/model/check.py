@@ -1,8 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Check the models with spin: each must hold, and must fail with each of its seeded bugs.
 
-Run as `python docs/model/check.py [MODEL..]`. Models in a folder below are checked on request:
-`next` for all of those, `next/match` for one. The head of a model lists its configurations
+Run as `python docs/model/check.py [MODEL..]`. The head of a model lists its configurations
 (` * RUN DEPTH=2`; none: one configuration without definitions) and its seeded bugs
 (` * BUG 1: what`, in the first configuration, or ` * BUG 1 DEPTH=2: what`). A search that takes
 half a minute is marked: ` * RUN DEPTH=3 (long)`. One that meets the bug much sooner if the last
@@ -46,10 +45,6 @@ class Case:
     marks: str = ""
 
     @property
-    def folder(self) -> str:
-        return self.model.rpartition("/")[0]
-
-    @property
     def is_long(self) -> bool:
         return "(long)" in self.marks
 
@@ -71,17 +66,9 @@ class Outcome:
     seconds: float
 
 
-def cases(folder: str = "") -> list[Case]:
+def cases() -> list[Case]:
     """List the checks: every model in all its configurations, then with each bug."""
-    return [case for path in sorted((DIRECTORY / folder).glob("*.pml")) for case in _cases_of(path)]
-
-
-def _cases_named(arguments: list[str]) -> list[Case]:
-    if not arguments:
-        return cases()
-    folders = sorted({"", *(name.partition("/")[0] for name in arguments)})
-    known = [case for folder in folders for case in cases(folder)]
-    return [case for case in known if {case.model, case.folder} & set(arguments)]
+    return [case for path in sorted(DIRECTORY.glob("*.pml")) for case in _cases_of(path)]
 
 
 def _cases_of(path: Path) -> list[Case]:
@@ -89,10 +76,9 @@ def _cases_of(path: Path) -> list[Case]:
     if "init {" not in text:  # included by other models only
         return []
     runs = re.findall(r"^ \* RUN ([^(\n]+)(.*)$", text, re.M) or [("", "")]
-    model = path.relative_to(DIRECTORY).with_suffix("").as_posix()
-    built = [Case(model, tuple(run.split()), marks=marks) for run, marks in runs]
+    built = [Case(path.stem, tuple(run.split()), marks=marks) for run, marks in runs]
     seeded = [
-        Case(model, tuple(run.split()) or built[0].defines, int(bug), what, marks)
+        Case(path.stem, tuple(run.split()) or built[0].defines, int(bug), what, marks)
         for bug, run, marks, what in re.findall(r"^ \* BUG (\d+)([^(:]*)(.*?): (.+)$", text, re.M)
     ]
     return built + seeded
@@ -136,7 +122,9 @@ def _read(report: str, seconds: float) -> Outcome:
 
 def main(arguments: list[str]) -> int:
     failures = 0
-    for case in _cases_named(arguments):
+    for case in cases():
+        if arguments and case.model not in arguments:
+            continue
         outcome = check(case)
         as_expected = bool(outcome.violation) == bool(case.bug)
         failures += not as_expected

@@ -1,28 +1,38 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does a subscription that joins while its publisher publishes get each message from its
- * join on exactly once, and, if both are transient local, what the ring still holds from before?
+ * Question: does a subscription that is created while a publisher is created and publishes get each
+ * message from its creation on exactly once, and the history if both are transient local, although
+ * neither end writes into the other one's lists?
  *
- * Follows join in matching.cpp, the publisher's ReaderList::refresh in reclaim and commit,
- * RecordFinder (next, resync) and Subscription::claim. The subscription already serves other
- * publishers, so resync may be set at any time. A message may be missed for one reason only: its
- * record was overwritten. The queue is long enough here (for a short one see queue.pml), and the
- * publisher waits for a pinned record instead of skipping it (see record.pml).
+ * The subscription stores its row and raises the topic's `changes`; it reads nothing of the
+ * publisher. The publisher looks at `changes` before it makes a record, after it cleared the number
+ * of an old one, and after it stored `last`. A reader that it finds gets a seat in the publisher's
+ * memory, which says where that reader starts, before any hint: one of the history at its beginning. The claim is one word in the
+ * subscription's memory, so it needs no seat. A seat is used again after its former reader is gone:
+ * it starts with that one's `taken`. A message may be missed for one reason only: the publisher
+ * overwrote its record, knowing that the reader wanted it. Any hint may find the pipe full; the
+ * reader then looks for itself. The queue is long enough, and the
+ * publisher waits for a pinned record.
  *
  * RUN HISTORY=0
  * RUN HISTORY=1
- * BUG 1: publisher does not load match_generation again after it stored last
- * BUG 2: no fence between last and the load of match_generation
- * BUG 3: messages published during the match are not scanned for
- * BUG 4: source active before match_generation is incremented
- * BUG 5: duplicates not ignored
- * BUG 6: resync cleared after the scan
- * BUG 7: queue drained after the scan
- * BUG 8: scan noted up to a last that was loaded after it
- * BUG 9: publisher does not load match_generation again after it cleared number
- * BUG 10: a volatile match starts at the first record
- * BUG 11 HISTORY=1: history is not scanned for
- * BUG 12 HISTORY=1: a hint is taken before the history of its new source
+ * BUG 1: publisher does not load changes again after it stored last
+ * BUG 2: no fence between last and the load of changes
+ * BUG 3 HISTORY=1: publisher does not load changes again after it cleared number
+ * BUG 4: changes raised before the subscription's row is live
+ * BUG 5: publisher walks along the chain before it loads changes
+ * BUG 6: a reader found after last was stored starts behind that record
+ * BUG 7: seat's owner stored before where it starts
+ * BUG 8: seat given after the hint
+ * BUG 9: duplicates not ignored
+ * BUG 10: resync cleared after the scan
+ * BUG 11: queue drained after the scan
+ * BUG 12: scan noted up to a last that was loaded after it
+ * BUG 13 HISTORY=1: history is read before changes is raised
+ * BUG 14 HISTORY=1: history is not scanned for
+ * BUG 15: no fence between reading and the load of number
+ * BUG 16: no fence between number cleared and the load of reading
+ * BUG 17 HISTORY=1: a reader of the history starts behind the record before the one in work
  */
 #define MESSAGES 3
 #define COUNT 2
@@ -30,59 +40,86 @@
 #define NUMBER(d) (d)
 #define DATA(d) (2 + (d))
 #define LAST 4
-#define GENERATION 5      /* match_generation */
-#define ACTIVE 6          /* of the reader table's entry */
-#define STATE 7           /* of the source */
-#define TAKEN 8
-#define READING 9
-#define SOURCE_GENERATION 10
+#define CHANGES 5         /* of the topic's bucket */
+#define LIVE 6            /* row of the subscription */
+#define PUBLISHER_LIVE 7  /* row of the publisher */
+#define OWNER 8           /* of the seat; written by the publisher */
+#define TAKEN 9           /* of the seat; written by the publisher until OWNER, then by the reader */
+#define READING 10        /* of the subscription */
 #define WORDS 11
-#define PROCESSES 3
+#define PROCESSES 2
 #define PUBLISHER 0
-#define MATCHER 1
-#define READER 2
-
-#define unused 0
-#define joining 1
-#define active 2
+#define READER 1
 
 #include "tso.pml"
 
-bool resync;
+bool resync = HISTORY && BUG != 14;
 chan queue = [MESSAGES] of { byte };
-bool published_all, joined;
+bool published_all;
 
 /* For the properties only. */
-byte first_wanted;        /* the match promises the records from this one on */
+byte first_possible;      /* a volatile reader gets none published before it was created */
+byte first_wanted = MESSAGES + 1;
 byte delivered[MESSAGES + 1];
 bool overwritten[MESSAGES + 1];
 
-inline raise(p, a) {
-  d_step { settled(p) -> memory[a]++ }
+inline raise(p) {
+  d_step { settled(p) -> memory[CHANGES]++ }
+}
+
+inline give_seat() {
+  if
+  :: knows_reader && load(PUBLISHER, OWNER) == 0 ->
+#if BUG == 7
+     store_release(PUBLISHER, OWNER, 1);
+#endif
+     start = (BUG == 6 -> load(PUBLISHER, LAST) : (HISTORY && BUG != 17 -> 0 : n - 1));
+     store_release(PUBLISHER, TAKEN, start);
+#if BUG != 7
+     store_release(PUBLISHER, OWNER, 1)
+#endif
+  :: else
+  fi
 }
 
 inline refresh() {
-  atomic {
-    if
-    :: load(PUBLISHER, GENERATION) != seen ->
-       seen = load(PUBLISHER, GENERATION);
-       knows_reader = load(PUBLISHER, ACTIVE)
-    :: else
-    fi
-  }
+#if BUG == 5
+  knows_reader = load(PUBLISHER, LIVE);
+#endif
+  now = load(PUBLISHER, CHANGES);
+  if
+  :: now != seen ->
+#if BUG != 5
+     knows_reader = load(PUBLISHER, LIVE);
+#endif
+#if BUG != 8
+     give_seat();
+#endif
+     seen = now
+  :: else
+  fi
 }
 
 inline reclaim(old) {
-  atomic { store_seq_cst(PUBLISHER, NUMBER((old) % COUNT), 0); overwritten[old] = true };
-#if BUG != 9
+  atomic {
+    overwritten[old] = HISTORY || (knows_reader && load(PUBLISHER, TAKEN) < old);
+#if BUG == 16
+    store_release(PUBLISHER, NUMBER((old) % COUNT), 0)
+#else
+    store_seq_cst(PUBLISHER, NUMBER((old) % COUNT), 0)
+#endif
+  };
+#if BUG != 3
   refresh();
 #endif
   !knows_reader || load(PUBLISHER, READING) != (old)
 }
 
 proctype Publisher() {
-  byte n, seen;
+  byte n, now, seen, start;
   bool knows_reader;
+  store_release(PUBLISHER, PUBLISHER_LIVE, 1);           /* under the registry lock */
+  raise(PUBLISHER);
   do
   :: n < MESSAGES ->
      n++;
@@ -103,68 +140,55 @@ proctype Publisher() {
 #endif
      if
      :: knows_reader -> settled(PUBLISHER); queue!n      /* a compare-and-swap */
+     :: knows_reader -> settled(PUBLISHER); resync = true               /* full pipe */
      :: else
-     fi
+     fi;
+#if BUG == 8
+     give_seat()
+#endif
   :: n == MESSAGES -> break
   od;
   settled(PUBLISHER);
   published_all = true
 }
 
-inline open_source() {
-  store_seq_cst(MATCHER, STATE, active);
-  raise(MATCHER, SOURCE_GENERATION)
-}
-
-proctype Matcher() {
-  byte taken;
-  atomic {
-    taken = (HISTORY || BUG == 10 -> 0 : load(MATCHER, LAST));
-    first_wanted = (HISTORY -> 1 : load(MATCHER, LAST) + 1)
-  };
-  store_release(MATCHER, TAKEN, taken);
-  store_release(MATCHER, STATE, joining);
-#if BUG == 4
-  open_source();
-#endif
-  store_release(MATCHER, ACTIVE, 1);
-  raise(MATCHER, GENERATION);
-#if BUG != 4
-  open_source();
-#endif
+inline meet() {
   if
-  :: atomic { BUG != 3 && BUG != 11 && load(MATCHER, LAST) > taken -> resync = true }
+  :: !met && load(READER, OWNER) != 0 ->
+     met = true;
+     noted = (load(READER, TAKEN) > noted -> load(READER, TAKEN) : noted)
   :: else
-  fi;
-  joined = true
-}
-
-inline renew_readers() {
-  atomic {
-    if
-    :: !known && load(READER, SOURCE_GENERATION) != 0 && load(READER, STATE) == active ->
-       known = true;
-       added = true;
-       noted = load(READER, TAKEN)
-    :: else
-    fi
-  }
+  fi
 }
 
 inline take(n) {
+#if BUG == 15
+  store_release(READER, READING, n);
+#else
   store_seq_cst(READER, READING, n);
+#endif
+  meet();
   if
-  :: load(READER, NUMBER(n % COUNT)) == n ->
-     atomic {
-       assert(load(READER, DATA(n % COUNT)) == n);
-       delivered[n]++;
-       assert(n > last_delivered);
-       last_delivered = n
-     }
+  :: met && (n > noted || is_listed || BUG == 9) ->
+     if
+     :: load(READER, NUMBER(n % COUNT)) == n ->
+        atomic {
+          assert(load(READER, DATA(n % COUNT)) == n);
+          delivered[n]++;
+          assert(n > last_delivered);
+          last_delivered = n
+        }
+     :: else
+     fi;
+     noted = (n > noted -> n : noted);
+     if
+     :: load(READER, OWNER) != 0 -> store_seq_cst(READER, TAKEN, n)
+     :: else
+     fi
   :: else
   fi;
-  atomic { store_seq_cst(READER, TAKEN, n); noted = (n > noted -> n : noted) };
-  store_release(READER, READING, 0)
+  store_release(READER, READING, 0);
+  is_listed = false
 }
 
 inline empty_queue() {
@@ -175,9 +199,13 @@ inline empty_queue() {
 }
 
 inline scan() {
-  renew_readers();
+  meet();
   if
-  :: known ->
+  :: HISTORY && load(READER, PUBLISHER_LIVE) -> met = true
+  :: else
+  fi;
+  if
+  :: met ->
      last = load(READER, LAST);
      n = noted + 1;
      do
@@ -190,7 +218,7 @@ inline scan() {
         }
      :: n > last -> break
      od;
-#if BUG == 8
+#if BUG == 12
      last = load(READER, LAST);
 #endif
      atomic { noted = (last > noted -> last : noted); last = 0; n = 0 }
@@ -199,52 +227,65 @@ inline scan() {
 }
 
 inline look_at_everything() {
-#if BUG != 6
+#if BUG != 10
   resync = false;
 #endif
-#if BUG == 7
+#if BUG == 11
   scan();
   empty_queue();
 #else
   empty_queue();
   scan();
 #endif
-#if BUG == 6
+#if BUG == 10
   resync = false
+#endif
+}
+
+/* Under the registry lock. */
+inline create() {
+#if BUG == 13
+  look_at_everything();
+#endif
+  first_possible = (HISTORY -> 1 : load(READER, LAST));
+#if BUG != 4
+  store_release(READER, LIVE, 1);
+#endif
+  atomic { settled(READER) -> raise(READER); first_wanted = (HISTORY -> 1 : memory[LAST] + 1) };
+#if BUG == 4
+  store_seq_cst(READER, LIVE, 1)
 #endif
 }
 
 proctype Subscription() {
   chan backlog = [MESSAGES] of { byte };
   byte n, noted, last, last_delivered;
-  bool known, added;
+  bool met, is_listed;
+  create();
   do
   :: resync -> look_at_everything()
-  :: backlog?n -> take(n); n = 0
+  :: !resync && nempty(backlog) -> backlog?n; is_listed = true; take(n); n = 0
   :: empty(backlog) && !resync && nempty(queue) ->
      queue?n;
-     added = false;
-     renew_readers();
      if
-     :: added && BUG != 12 -> look_at_everything()      /* finds n as well */
-     :: (!added || BUG == 12) && known && (n > noted || BUG == 5) && n <= load(READER, LAST) ->
-        take(n)
-     :: else
+     :: resync -> look_at_everything()                   /* finds n as well */
+     :: else -> take(n)
      fi;
      n = 0
-  :: atomic { published_all && joined && !resync && empty(queue) && empty(backlog) -> break }
+  :: atomic { published_all && !resync && empty(queue) && empty(backlog) -> break }
   od;
   n = 1;
   do
   :: n <= MESSAGES ->
-     assert(n >= first_wanted || delivered[n] == 0 || HISTORY);
-     assert(n < first_wanted || delivered[n] == 1 || (delivered[n] == 0 && overwritten[n]));
+     assert(delivered[n] <= 1);
+     assert(n >= first_possible || delivered[n] == 0);
+     assert(n < first_wanted || delivered[n] == 1 || overwritten[n]);
      n++
   :: else -> break
   od
 }
 
-/* Another publisher's match, death or full pipe. */
+/* Another publisher's death. */
 proctype Other() {
   if
   :: resync = true
@@ -254,7 +295,8 @@ proctype Other() {
 
 init {
   atomic {
-    run StoreBuffer(PUBLISHER); run StoreBuffer(MATCHER); run StoreBuffer(READER);
-    run Publisher(); run Matcher(); run Subscription(); run Other()
+    memory[TAKEN] = MESSAGES;                            /* of the seat's former reader */
+    run StoreBuffer(PUBLISHER); run StoreBuffer(READER);
+    run Publisher(); run Subscription(); run Other()
   }
 }

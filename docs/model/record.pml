@@ -47,8 +47,8 @@
 #define READING(r) (11 + (r))
 #define TAKEN(r) (13 + (r))
 #define LAST 15
-#define GENERATION 16     /* match_generation */
-#define ACTIVE 17         /* of reader 0's entry in the reader table; reader 1's never changes */
+#define CHANGES 16     /* changes of the topic's bucket */
+#define LIVE 17         /* the row of reader 0; reader 1's never changes */
 #define WORDS 18
 #define PROCESSES 3
 #define PUBLISHER 2       /* readers are processes 0 and 1 */
@@ -144,15 +144,15 @@ proctype Reader(byte r; byte claims) {
   fi
 }
 
-/* SIGKILL at any step of reader 0, or never; the reaper removes it from the reader table. */
+/* SIGKILL at any step of reader 0, or never; the reaper closes its row. */
 proctype Reaper() {
   if
   :: KILLABLE -> killed = true;
      if
      :: dead && settled(0) ->
-        memory[ACTIVE] = 0;
+        memory[LIVE] = 0;
 #if BUG != 9
-        memory[GENERATION]++;
+        memory[CHANGES]++;
 #endif
         gone++
      :: gone == READERS           /* it had ended before */
@@ -166,9 +166,9 @@ proctype Reaper() {
 inline refresh() {
   atomic {
     if
-    :: load(PUBLISHER, GENERATION) != seen ->
-       seen = load(PUBLISHER, GENERATION);
-       first_reader = (load(PUBLISHER, ACTIVE) -> 0 : 1)
+    :: load(PUBLISHER, CHANGES) != seen ->
+       seen = load(PUBLISHER, CHANGES);
+       first_reader = (load(PUBLISHER, LIVE) -> 0 : 1)
     :: else
     fi
   }
@@ -316,7 +316,7 @@ init {
       memory[DATA(i - 1)] = i
     };
     memory[LAST] = BLOCKS;
-    memory[ACTIVE] = 1;
+    memory[LIVE] = 1;
     run StoreBuffer(0); run StoreBuffer(1); run StoreBuffer(PUBLISHER);
     run Reader(0, CLAIMS); run Reaper(); run Publisher();
     if

@@ -27,7 +27,7 @@
 #define FIRST(e) (e)      /* of the generation entries */
 #define READING 3
 #define LAST 4
-#define GENERATION 5      /* match_generation */
+#define CHANGES 5      /* changes of the topic's bucket */
 #define WORDS 6
 #define PROCESSES 2
 #define PUBLISHER 0
@@ -124,10 +124,10 @@ inline scan() {
   store_release(READER, READING, no_record)
 }
 
-/* Joins at any time; its source is active once match_generation is incremented. */
+/* Joins at any time; it may look once its row is live and changes are raised. */
 proctype Reader() {
   byte n, seen, best, entry, claims;
-  d_step { settled(READER) -> memory[GENERATION] = 1 };
+  d_step { settled(READER) -> memory[CHANGES] = 1 };
   do
   :: claims < 2 ->
      claims++;
@@ -147,7 +147,7 @@ proctype Reader() {
 /* TopicDsmWriter */
 
 inline refresh() {
-  knows_reader = load(PUBLISHER, GENERATION) != 0
+  knows_reader = load(PUBLISHER, CHANGES) != 0
 }
 
 inline open(e, n) {

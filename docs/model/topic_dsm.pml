@@ -1,171 +1,208 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: is the topic DSM of a gone publisher freed only when no process can access it any more,
- * and does a late reader leave the next match intact, which may get the same source entry and the
- * same memory? Are messages that the reader never takes counted as lost once, by the reader or by
- * the sweeper?
+ * Question: is the topic DSM of a gone publisher freed only when no subscription can access it any
+ * more, and always freed in the end, though a subscription looks at it because of a stale hint or is
+ * killed in its look? Is the next publisher in the same slot and the same memory unharmed? Are
+ * messages that are never taken counted as lost once, by the subscription or by the process that
+ * frees?
  *
- * Follows freeing.cpp (sweep_publisher, revoke), count_undelivered, matching.cpp (join), Source
- * (claim, release) and ReceiveThread::forward. The subscription holds a hint of the first publisher
- * whose record is already gone. A sweep that finds the topic DSM in use gives up, and is repeated
- * later.
+ * A look is one word in the subscription's memory, `reading`, which names publisher and record. It
+ * counts while the subscription's row is live. After it is stored, the publisher's row says whether
+ * the memory is there. The receive thread reads the row only, never the topic DSM, so it cannot
+ * stand in the way; its eMCOS message may be late by a whole publisher, which is one more stale
+ * hint. Freeing stores the row's state before it loads `reading`; a subscription that ends its look
+ * loads the state after it cleared `reading`, and tells the reaper.
  *
- * BUG 1: no fence between reading and the load of state
- * BUG 2: revoked without checking reading
- * BUG 3: state revoked after the load of reading
- * BUG 4: claim does not compare the source's incarnation
- * BUG 5: a refused claim advances the cursor
+ * BUG 1: no fence between reading and the load of the row
+ * BUG 2: freed without checking reading
+ * BUG 3: state stored after the load of reading
+ * BUG 4: a look does not compare the publisher's incarnation
+ * BUG 5: a refused look advances the cursor
  * BUG 6: reading cleared before the waiting publisher is notified
- * BUG 7: receive thread: no fence between phase and the load of the slot
- * BUG 8: freed while the receive thread is in its phase
- * BUG 9: incarnation incremented after the source is active again
- * BUG 10: sweeper counts losses before it checks reading
- * BUG 11: sweeper counts losses before the source is revoked
- * BUG 12: receive thread checks the topic DSM's header instead of the publisher's slot
- * BUG 13: reader loads last for the hint's full number without a claim
+ * BUG 7: no fence between reading cleared and the load of the state: the reaper is not told
+ * BUG 8: a look that ends does not tell the reaper
+ * BUG 9: incarnation raised after the row is live again
+ * BUG 10: losses counted before reading is checked
+ * BUG 11: losses counted before the state is stored
+ * BUG 12: the look of a killed subscription counts for ever
+ * BUG 13: a killed subscription's row is closed before its process has stopped
+ * BUG 14: the seat is looked for before reading is stored
+ * BUG 15: no fence between the state and the load of reading
  */
-#define STATE 0           /* of the source */
-#define INCARNATION 1
-#define READING 2
-#define TAKEN 3
-#define SLOT 4            /* publisher whose memory may be accessed; 0 = freeing */
-#define PHASE 5           /* of the receive thread */
-#define ACCOUNTED 6       /* of the source */
-#define WORDS 7
-#define PROCESSES 3
+#define STATE 0           /* of the publisher's row */
+#define INCARNATION 1     /* of the publisher's row */
+#define READING 2         /* of the subscription: the incarnation of the publisher that it names */
+#define TAKEN 3           /* of the seat, in the publisher's memory */
+#define ACCOUNTED 4       /* of the seat */
+#define WORDS 5
+#define PROCESSES 2
 #define READER 0
-#define RECEIVER 1
-#define SWEEPER 2
+#define SWEEPER 1
 
-#define free_source 0
-#define active 1
-#define revoked 2
+#define free_slot 0
+#define has_memory 1      /* live or closed */
+#define freeing 2
 
-#define header_only 255
-#define NUMBER 9          /* of the stale hint; the next publisher starts with lower ones */
+#define NUMBER 9          /* last record of the first publisher; the next one starts with lower ones */
 
 #include "tso.pml"
 
 byte lost;                /* for the property: messages of the first publisher */
 byte owner = 1;           /* of the topic DSM's memory: 1, 0 (none), 2 */
+bool subscription_lives = true;   /* its row is live */
+bool killed, reader_ended, told;
+chan queue = [2] of { byte };     /* stale hints: the incarnation that they name */
 
 /* Any access to the memory of publisher `whose`'s topic DSM. */
 inline touch(whose) {
   assert(owner == whose)
 }
 
+inline end_look() {
+#if BUG == 7
+  store_release(READER, READING, 0);
+#else
+  store_seq_cst(READER, READING, 0);
+#endif
+#if BUG != 8
+  if
+  :: load(READER, STATE) == freeing -> told = true
+  :: else
+  fi
+#endif
+}
+
 inline release(whose) {
   store_seq_cst(READER, TAKEN, NUMBER);
 #if BUG == 6
   store_release(READER, READING, 0);
-  touch(whose)
+  touch(whose);
+  end_look()
 #else
-  touch(whose);                                        /* notify_waiting_publisher */
-  store_release(READER, READING, 0)
+  touch(whose);                                        /* wakes a waiting publisher */
+  end_look()
 #endif
 }
 
-inline look_at_last() {
-#if BUG != 13
-  store_seq_cst(READER, READING, header_only);
+/* The claim of a record that may be gone already. */
+inline look(n) {
+#if BUG == 14
+  touch(n);
 #endif
-  if
-  :: load(READER, STATE) == active && load(READER, INCARNATION) == 1 || BUG == 13 -> touch(1)
-  :: else
-  fi;
-#if BUG != 13
-  store_release(READER, READING, 0)
-#endif
-}
-
-/* Has found the source of the first publisher and is about to claim. */
-proctype Reader() {
-  bool may_look;
-  look_at_last();
 #if BUG == 1
-  store_release(READER, READING, NUMBER);
+  store_release(READER, READING, n);
 #else
-  store_seq_cst(READER, READING, NUMBER);
+  store_seq_cst(READER, READING, n);
 #endif
-  may_look = load(READER, STATE) == active;
+  may_look = load(READER, STATE) == has_memory;
 #if BUG != 4
-  may_look = may_look && load(READER, INCARNATION) == 1;
+  may_look = may_look && load(READER, INCARNATION) == n;
 #endif
   if
   :: may_look ->
-     touch(1);                                         /* number, descriptor, bytes */
-     lost = lost + NUMBER - load(READER, ACCOUNTED);
-     store_release(READER, ACCOUNTED, NUMBER);
-     release(1)
+     touch(n);                                         /* seat, number, descriptor, bytes */
+     atomic {
+       missing = NUMBER - load(READER, ACCOUNTED);
+       store_release(READER, ACCOUNTED, NUMBER);
+       lost = lost + missing;
+       missing = 0
+     };
+     release(n)
   :: !may_look ->
 #if BUG == 5
      store_seq_cst(READER, TAKEN, NUMBER);
 #endif
-     store_release(READER, READING, 0)
+     end_look()
+  fi;
+  may_look = false
+}
+
+proctype Reader() {
+  bool may_look;
+  byte n, missing;
+  {
+    do
+    :: queue?n -> look(n)
+    :: atomic { empty(queue) -> break }
+    od
+  } unless { killed };
+  reader_ended = true
+}
+
+/* Pushes the hint of an eMCOS message that waited in the pipe, at any time. */
+proctype ReceiveThread() {
+  queue!1
+}
+
+/* Kills and reaps, or not. */
+proctype Reaper() {
+  if
+  ::
+#if BUG == 13
+     subscription_lives = false;
+#endif
+     killed = true;
+     reader_ended && settled(READER);
+     subscription_lives = false;
+     told = true                                       /* a graph change: the reaper looks again */
+  :: skip
   fi
 }
 
-/* Has an eMCOS message of the first publisher. */
-proctype ReceiveThread() {
-#if BUG == 7
-  store_release(RECEIVER, PHASE, 1);
-#else
-  store_seq_cst(RECEIVER, PHASE, 1);
-#endif
+inline count_lost() {
+  atomic {
+    lost = lost + NUMBER - load(SWEEPER, ACCOUNTED);
+    store_release(SWEEPER, ACCOUNTED, NUMBER)
+  }
+}
+
 #if BUG == 12
-  touch(1);
-#endif
-  if
-  :: load(RECEIVER, SLOT) == 1 -> touch(1)              /* the header, the reader table */
-  :: else
-  fi;
-  store_release(RECEIVER, PHASE, 0)
-}
-
-inline count_undelivered() {
-  lost = lost + NUMBER - load(SWEEPER, ACCOUNTED);
-  store_release(SWEEPER, ACCOUNTED, NUMBER)
-}
-
-inline revoke() {
-#if BUG == 11
-  count_undelivered();
-#endif
-#if BUG == 3
-  load(SWEEPER, READING) == 0;
-  store_seq_cst(SWEEPER, STATE, revoked);
+#define is_read() (load(SWEEPER, READING) == 1)
 #else
-  store_seq_cst(SWEEPER, STATE, revoked);
-#if BUG == 10
-  count_undelivered();
+#define is_read() (subscription_lives && load(SWEEPER, READING) == 1)
 #endif
-#if BUG != 2
-  load(SWEEPER, READING) == 0;
-#endif
-#endif
-#if BUG != 10 && BUG != 11
-  count_undelivered();
-#endif
-  store_release(SWEEPER, STATE, free_source)
+
+/* A sweep that finds the topic DSM in use gives up, and is repeated when the reaper is told. */
+inline see_readers_out() {
+  do
+  :: is_read() -> told; told = false
+  :: !is_read() -> break
+  od
 }
 
 inline free_topic_dsm() {
-  store_seq_cst(SWEEPER, SLOT, 0);
-#if BUG != 8
-  load(SWEEPER, PHASE) == 0;
+#if BUG == 11
+  count_lost();
 #endif
-  owner = 0
+#if BUG == 3
+  see_readers_out();
+#endif
+#if BUG == 15
+  store_release(SWEEPER, STATE, freeing);
+#else
+  store_seq_cst(SWEEPER, STATE, freeing);
+#endif
+#if BUG == 10
+  count_lost();
+#endif
+#if BUG != 2 && BUG != 3
+  see_readers_out();
+#endif
+#if BUG != 10 && BUG != 11
+  count_lost();
+#endif
+  owner = 0;
+  store_release(SWEEPER, STATE, free_slot)
 }
 
-inline join_second_publisher() {
+inline create_second_publisher() {
   owner = 2;
-  store_seq_cst(SWEEPER, SLOT, 2);
+  store_release(SWEEPER, TAKEN, 0);                    /* its seat for the same reader */
+  store_release(SWEEPER, ACCOUNTED, 0);
 #if BUG != 9
   store_release(SWEEPER, INCARNATION, 2);
 #endif
-  store_release(SWEEPER, TAKEN, 0);
-  store_release(SWEEPER, ACCOUNTED, 0);
-  store_seq_cst(SWEEPER, STATE, active);
+  store_seq_cst(SWEEPER, STATE, has_memory);
 #if BUG == 9
   store_release(SWEEPER, INCARNATION, 2);
 #endif
@@ -174,21 +211,21 @@ inline join_second_publisher() {
 
 /* Serialized by the registry lock. */
 proctype Sweeper() {
-  revoke();
   free_topic_dsm();
-  join_second_publisher()
+  create_second_publisher()
 }
 
 init {
   atomic {
-    memory[STATE] = active;
+    memory[STATE] = has_memory;
     memory[INCARNATION] = 1;
-    memory[SLOT] = 1;
-    run StoreBuffer(READER); run StoreBuffer(RECEIVER); run StoreBuffer(SWEEPER);
-    run Reader(); run ReceiveThread(); run Sweeper()
+    queue!1;
+    run StoreBuffer(READER); run StoreBuffer(SWEEPER);
+    run Reader(); run ReceiveThread(); run Reaper(); run Sweeper()
   };
-  _nr_pr == 4 && settled(READER) && settled(RECEIVER) && settled(SWEEPER);
-  /* The second match starts where it should. */
-  assert(memory[TAKEN] == 0 && memory[ACCOUNTED] == 0 && memory[READING] == 0);
+  _nr_pr == 3 && settled(READER) && settled(SWEEPER);
+  /* The second publisher's seat starts where it should. */
+  assert(memory[TAKEN] == 0 && memory[ACCOUNTED] == 0);
+  assert(memory[READING] == 0 || killed);
   assert(lost == NUMBER)
 }

@@ -1,8 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """The formal models of the data path hold, and each seeded bug is found.
 
-Searches of half a minute are left to `make stress`, and so are the models that the code does not
-follow yet.
+Searches of half a minute are left to `make stress`.
 """
 
 from __future__ import annotations
@@ -23,14 +22,12 @@ check_models = importlib.util.module_from_spec(spec)
 sys.modules[spec.name] = check_models  # dataclasses look up their module here
 spec.loader.exec_module(check_models)
 
-CASES = check_models.cases() + check_models.cases("next")
+CASES = check_models.cases()
 
 
 def parameters(cases: list[Any]) -> list[Any]:
     return [
-        pytest.param(
-            case, id=case.name, marks=[pytest.mark.stress] if case.is_long or case.folder else []
-        )
+        pytest.param(case, id=case.name, marks=[pytest.mark.stress] if case.is_long else [])
         for case in cases
     ]
 

@@ -8,7 +8,7 @@
  * looks is not. A known peer that died counts as dead if its slot was not taken again before the
  * next look; else as one that left. Peers come and go in one slot. The owner of the registry lock is
  * the only process that stores, and a look only loads, so shared words are plain variables, as in
- * ../chains.pml, which is about the walk.
+ * chains.pml, which is about the walk.
  *
  * BUG 1: incarnation not compared after the row is read
  * BUG 2: closed before it is noted how the peer ended

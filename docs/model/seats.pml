@@ -30,7 +30,7 @@
 #define MESSAGES 2
 #define garbage 9
 
-#include "../tso.pml"
+#include "tso.pml"
 
 bool killed, has_stopped;
 
