@@ -8,26 +8,26 @@
  * kernel: a thread notes a mutex as pending, stores its number into it, and lists it; when the thread
  * ends, the kernel clears each of its listed and pending mutexes that holds its number.
  *
- * Seat 0 is that of process 0, whose threads have the numbers 1 and 2, and after it was reaped that
- * of process 2, whose threads have the numbers 2 and, with TWO=1, 3. Process 1, number 1, has seat 1,
+ * Badge 0 is that of process 0, whose threads have the numbers 1 and 2, and after it was reaped that
+ * of process 2, whose threads have the numbers 2 and, with TWO=1, 3. Process 1, number 1, has badge 1,
  * and reaps. Process 0 is killed at any step: its threads stop, the one that holds its line too, and
- * end later, in any order. With GUEST=1 seat 0 is the guest seat: it has no line, and processes 0 and
- * 2, number 1 each, occupy it under a lock of the file, which the kernel releases when a process has
+ * end later, in any order. With GUEST=1 badge 0 is the guest badge: it has no line, and processes 0 and
+ * 2, number 1 each, hold it under a lock of the file, which the kernel releases when a process has
  * ended. A waiting thread re-checks the owner, so no wake-up is modelled. Memory is sequentially
  * consistent: each store on which another thread relies is a locked instruction.
  *
  * RUN GUEST=0 TWO=0
  * RUN GUEST=1 TWO=0
  * RUN GUEST=0 TWO=1 (long)
- * BUG 1: all take the lock from one seat, so the seat is the lock, as a plain robust mutex is
+ * BUG 1: all take the lock from one badge, so the badge is the lock, as a plain robust mutex is
  * BUG 2: a lock whose owner has ended is taken over by a store
- * BUG 3 GUEST=1 TWO=0: a ticket names the seat alone
+ * BUG 3 GUEST=1 TWO=0: a ticket names the badge alone
  * BUG 4: an owner is judged by its line alone
- * BUG 5: an owner is judged by its seat alone
- * BUG 6 GUEST=1 TWO=0: a ticket of a predecessor in the own seat is waited for
- * BUG 7 GUEST=1 TWO=0: the guest seat is occupied without the lock of the file
- * BUG 8 GUEST=1 TWO=0: the lock of the file is given back before the seat
- * BUG 9 GUEST=0 TWO=1: threads of a process wait for each other in the seat, not before it
+ * BUG 5: an owner is judged by its badge alone
+ * BUG 6 GUEST=1 TWO=0: a ticket of a predecessor in the own badge is waited for
+ * BUG 7 GUEST=1 TWO=0: the guest badge is held without the lock of the file
+ * BUG 8 GUEST=1 TWO=0: the lock of the file is given back before the badge
+ * BUG 9 GUEST=0 TWO=1: threads of a process wait for each other with the badge, not before it
  */
 #define THREADS 5
 #define FIRST 0    /* process 0, number 1 */
@@ -36,11 +36,11 @@
 #define NEXT 3     /* process 2, number 2, or 1 */
 #define LAST 4     /* process 2, number 3 */
 
-byte mark[2];              /* LockSeat::occupied: the number of the thread in it */
+byte mark[2];              /* LockBadge::held: the number of the thread in it */
 bool line[2];              /* held */
-byte word;                 /* the ticket: 0, or seat + 1 + 2 * take */
+byte word;                 /* the ticket: 0, or badge + 1 + 2 * take */
 byte takes[2];
-byte pending[THREADS], listed[THREADS];  /* seat + 1 */
+byte pending[THREADS], listed[THREADS];  /* badge + 1 */
 bool inside[THREADS];
 bool is_killed;            /* process 0 */
 byte owners;
@@ -49,7 +49,7 @@ bool is_freed;             /* slot 0 */
 bool threads[2];           /* RegistryMutex::threads_ of process 0 and 2 */
 byte guest;                /* thread + 1 that holds the lock of the file */
 
-#define seat_of(ticket) ((ticket - 1) % 2)
+#define badge_of(ticket) ((ticket - 1) % 2)
 #if BUG == 3
 #define ticket_of(s) (s + 1)
 #else
@@ -78,21 +78,21 @@ inline end_thread(t, number) {
   }
 }
 
-inline occupy(t, s, number) {
+inline hold(t, s, number) {
   pending[t] = s + 1;
   atomic { mark[s] == 0 -> mark[s] = number };
   listed[t] = s + 1;
   pending[t] = 0
 }
 
-inline vacate(t, s) {
+inline give_badge_back(t, s) {
   pending[t] = s + 1;
   listed[t] = 0;
   mark[s] = 0;
   pending[t] = 0
 }
 
-#define IS_GUEST (GUEST && seat == 0)
+#define IS_GUEST (GUEST && badge == 0)
 #define own_threads threads[(t >= NEXT -> 1 : 0)]
 
 /* Killed in between, a process needs its mutex no more. */
@@ -127,17 +127,17 @@ inline judge(ticket) {
   if
   :: ticket == 0 -> has_ended = true
 #if BUG != 6
-  :: ticket != 0 && seat_of(ticket) == s -> has_ended = true
+  :: ticket != 0 && badge_of(ticket) == s -> has_ended = true
 #endif
   :: else ->
 #if BUG != 5 && BUG != 1
      if
-     :: !line[seat_of(ticket)] ->
+     :: !line[badge_of(ticket)] ->
 #endif
 #if BUG == 4
      has_ended = true
 #else
-     has_ended = (mark[seat_of(ticket)] == 0)
+     has_ended = (mark[badge_of(ticket)] == 0)
 #endif
 #if BUG != 5 && BUG != 1
      :: else
@@ -167,7 +167,7 @@ inline take_lock(s) {
           fi
         }
 #endif
-     :: else -> word != seen || (!line[seat_of(seen)] && mark[seat_of(seen)] == 0) || BUG == 1
+     :: else -> word != seen || (!line[badge_of(seen)] && mark[badge_of(seen)] == 0) || BUG == 1
      fi
   :: else -> break
   od;
@@ -203,21 +203,21 @@ inline leave(t, s) {
   }
 }
 
-proctype Thread(byte t, seat, number, rounds) {
+proctype Thread(byte t, badge, number, rounds) {
   byte s, seen, mine;
   bool is_owner, is_told, has_ended;
   {
 #if BUG == 1
     s = 0;
 #else
-    s = seat;
+    s = badge;
 #endif
     do
     :: rounds > 0 ->
        rounds--;
        lock_threads(t);
        lock_file(t);
-       occupy(t, s, number);
+       hold(t, s, number);
        take_lock(s);
        enter(t);
        reap(t);
@@ -225,7 +225,7 @@ proctype Thread(byte t, seat, number, rounds) {
 #if BUG == 8
        unlock_file(t);
 #endif
-       vacate(t, s);
+       give_badge_back(t, s);
        unlock_file(t);
        unlock_threads(t)
     :: else -> break

@@ -9,25 +9,25 @@
 namespace manycore {
 namespace {
 
-// A ticket: | takes : 52 | seat + 1 : 11 | waiters : 1 |. The flag lies in the lower half, on which
+// A ticket: | takes : 52 | badge + 1 : 11 | waiters : 1 |. The flag lies in the lower half, on which
 // waiting threads sleep.
 constexpr uint64_t waiters = 1;
-constexpr int seat_shift = 1;
+constexpr int badge_shift = 1;
 constexpr int takes_shift = 12;
-constexpr uint64_t seat_mask = (uint64_t{1} << (takes_shift - seat_shift)) - 1;
+constexpr uint64_t badge_mask = (uint64_t{1} << (takes_shift - badge_shift)) - 1;
 
 // A waiting thread looks at the owner by itself now and then: nothing wakes it if the thread that
 // was to wake it is killed before it does.
 constexpr int64_t first_look_ns = 1'000'000;
 constexpr int64_t last_look_ns = 128'000'000;
 
-constexpr uint64_t make_ticket(uint32_t seat, uint64_t takes) {
-  return takes << takes_shift | (uint64_t{seat} + 1) << seat_shift;
+constexpr uint64_t make_ticket(uint32_t badge, uint64_t takes) {
+  return takes << takes_shift | (uint64_t{badge} + 1) << badge_shift;
 }
 
-/// Not a seat's number if the ticket is damaged.
-constexpr uint32_t seat_of(uint64_t ticket) {
-  return static_cast<uint32_t>(ticket >> seat_shift & seat_mask) - 1;
+/// Not a badge's number if the ticket is damaged.
+constexpr uint32_t badge_of(uint64_t ticket) {
+  return static_cast<uint32_t>(ticket >> badge_shift & badge_mask) - 1;
 }
 
 /// The lower half of the ticket; only its address is used.
@@ -39,7 +39,7 @@ FutexWord & lower_half_of(std::atomic<uint64_t> & ticket) {
 }  // namespace
 
 /// Acquire: what the last owner changed is seen. Release: a thread that sees the ticket also sees
-/// that its seat is occupied. A failure leaves the ticket found in `seen`.
+/// that its badge is held. A failure leaves the ticket found in `seen`.
 bool RecoverableMutex::try_take(uint64_t & seen, uint64_t ticket) noexcept {
   return ticket_.compare_exchange_strong(seen, ticket, std::memory_order_acq_rel);
 }
@@ -59,8 +59,8 @@ void RecoverableMutex::sleep(uint64_t seen, int64_t until_ns) noexcept {
 }
 
 RecoverableMutex::Outcome RecoverableMutex::lock(
-  uint32_t seat, LockSeat & own, const HasEnded & has_ended, long timeout_ns) {
-  const uint64_t ticket = make_ticket(seat, ++own.takes);
+  uint32_t badge, LockBadge & own, const HasEnded & has_ended, long timeout_ns) {
+  const uint64_t ticket = make_ticket(badge, ++own.takes);
   uint64_t seen = 0;
   if (try_take(seen, ticket)) {
     return Outcome::locked;
@@ -70,8 +70,8 @@ RecoverableMutex::Outcome RecoverableMutex::lock(
   int64_t look_ns = first_look_ns;
   while (true) {
     // If the ticket is still there when this thread takes the mutex, its owner has not unlocked,
-    // and has ended, so it never will. A ticket of this thread's own seat is that of a predecessor.
-    const bool owner_died = seen != 0 && (seat_of(seen) == seat || has_ended(seat_of(seen)));
+    // and has ended, so it never will. A ticket of this thread's own badge is that of a predecessor.
+    const bool owner_died = seen != 0 && (badge_of(seen) == badge || has_ended(badge_of(seen)));
     if (seen == 0 || owner_died) {
       // Other threads may be asleep, so the flag stays set.
       if (try_take(seen, ticket | waiters)) {
@@ -94,9 +94,9 @@ RecoverableMutex::Outcome RecoverableMutex::lock(
 }
 
 /// Release: the next owner sees what this one changed. A damaged ticket is left alone.
-void RecoverableMutex::unlock(uint32_t seat) noexcept {
+void RecoverableMutex::unlock(uint32_t badge) noexcept {
   uint64_t seen = ticket_.load(std::memory_order_relaxed);
-  while (seat_of(seen) == seat) {
+  while (badge_of(seen) == badge) {
     if (ticket_.compare_exchange_weak(seen, 0, std::memory_order_release)) {
       if ((seen & waiters) != 0) {
         futex_wake_one(lower_half_of(ticket_));
@@ -108,7 +108,7 @@ void RecoverableMutex::unlock(uint32_t seat) noexcept {
 
 std::optional<uint32_t> RecoverableMutex::owner() const noexcept {
   const uint64_t seen = ticket_.load(std::memory_order_acquire);
-  return seen == 0 ? std::nullopt : std::optional(seat_of(seen));
+  return seen == 0 ? std::nullopt : std::optional(badge_of(seen));
 }
 
 bool RecoverableMutex::is_waited_for() const noexcept {

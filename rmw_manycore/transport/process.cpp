@@ -89,7 +89,7 @@ Process::Impl::Impl(const Placement & placement_, JoinOnly)
       ensure_cluster(*registry, placement.cluster);
       const Registry::Lock lock(*registry);
       slot = take_process_slot(life);
-      registry->sit(slot);
+      registry->use_badge_of(slot);
     } catch (...) {
       if (!is_alive(paths)) {
         remove_platform(paths);

@@ -195,8 +195,9 @@ TEST_CASE("killed while it holds the lock: a process that can map no cluster lea
   holder.expect("holding");
   holder.kill();
   Registry late(f.platform.paths());
-  late.sit(process_of(late, ProcessIdentity::own()));  // a guest needs a descriptor to lock
-  for (int i = 0; i < 2; ++i) {  // the second time the owner has not just died
+  late.use_badge_of(
+    process_of(late, ProcessIdentity::own()));  // a guest needs a descriptor to lock
+  for (int i = 0; i < 2; ++i) {                 // the second time the owner has not just died
     const Refusal refusal = refusal_of([&] {
       const NoDescriptors none;
       const Registry::Lock lock(late);

@@ -26,11 +26,11 @@ using namespace manycore;
 
 namespace {
 
-/// A member of a platform that takes the registry lock from its own seat.
+/// A member of a platform that takes the registry lock with its own badge.
 struct Member {
   explicit Member(const std::string & platform)
   : process(join(platform)), registry(PlatformPaths::of(platform)) {
-    registry.sit(process_of(registry, ProcessIdentity::own()));
+    registry.use_badge_of(process_of(registry, ProcessIdentity::own()));
   }
   static std::shared_ptr<Process> join(const std::string & platform) {
     Placement placement;

@@ -23,7 +23,7 @@ constexpr uint32_t nothing = UINT32_MAX;  ///< no slot
 constexpr size_t name_bytes = 256;  ///< ROS names are at most 255 characters
 
 /// free -> live -> closed -> freeing -> unreachable -> free; only endpoints pass through the states
-/// from closed on (see docs/design/freeing.md).
+/// from closed on (see docs/design/rows_seats_hands.md).
 ///
 /// Any process that holds the registry lock may free a `closed` endpoint. A publisher stays closed
 /// while it owes a reader messages, and then becomes `freeing`: from then on no process may follow
@@ -59,10 +59,10 @@ constexpr uint32_t receive_thread_line = process_capacity;  ///< + cluster numbe
 constexpr uint32_t configurator_line = receive_thread_line + max_clusters + 1;
 constexpr uint32_t lifeline_count = configurator_line + 1;
 
-/// Seats from which the registry lock is taken: one for the holder of each line, and one for
+/// Badges with which the registry lock is taken: one for the holder of each line, and one for
 /// guests, one at a time: processes that are joining, and tools.
-constexpr uint32_t guest_seat = lifeline_count;
-constexpr uint32_t lock_seat_count = guest_seat + 1;
+constexpr uint32_t guest_badge = lifeline_count;
+constexpr uint32_t lock_badge_count = guest_badge + 1;
 
 /// A member process of the platform.
 struct ProcessEntry {
@@ -229,7 +229,7 @@ struct RegistryHeader {
   Death deaths[kept_deaths];  ///< ring; the next death goes to index death_count mod kept_deaths
   TopicBucket topic_buckets[topic_bucket_count];
   Hand hands[lifeline_count];  ///< by line
-  LockSeat seats[lock_seat_count];
+  LockBadge badges[lock_badge_count];
 };
 
 constexpr uint64_t align_up(uint64_t x, uint64_t alignment) {

@@ -138,10 +138,10 @@ void Reaper::release_abandoned(pid_t pid) {
     const ProcessIdentity holder = lifelines.holder(line);
     if (holder.pid == pid && holder.is_of_this_pid_namespace()) {
       lifelines.release_if_abandoned(line);
-      RobustMutex & occupied = registry_.header().seats[line].occupied;
-      const pid_t thread = occupied.owner();
+      RobustMutex & held = registry_.header().badges[line].held;
+      const pid_t thread = held.owner();
       if (thread != 0 && !lifelines.is_locked(line)) {
-        occupied.mark_owner_died(thread);
+        held.mark_owner_died(thread);
       }
     }
   }

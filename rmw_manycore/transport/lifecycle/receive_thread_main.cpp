@@ -30,7 +30,7 @@ void serve(const std::string & platform, uint32_t id, Daemon & daemon) {
     daemon.ready();  // another one was faster
     return;
   }
-  registry.sit(receive_thread_line + id);
+  registry.use_badge_of(receive_thread_line + id);
   const bool replaces = cluster.header().receive_thread_pid.exchange(getpid()) != 0;
   prctl(PR_SET_NAME, ("manycore_rt_" + std::to_string(id)).c_str());
   const int host_cpu = registry.header().profile.host_cpu_of_receive_thread[id - 1];

@@ -97,8 +97,8 @@ void Registry::create(
   header.segment.size_bytes = registry_bytes;
   header.segment.platform_nonce = random_nonce();
   header.profile = profile;
-  for (LockSeat & seat : header.seats) {
-    seat.occupied.initialize();
+  for (LockBadge & badge : header.badges) {
+    badge.held.initialize();
   }
   header.topic_count = static_cast<uint32_t>(topics.size());
   for (uint32_t i = 0; i < topic_bucket_count; ++i) {

@@ -128,10 +128,10 @@ public:
   PhasesSeen & phases_seen() noexcept { return phases_seen_; }
 
   /// Takes the lock as the holder of a line, whose hand is then this process's; see
-  /// RegistryMutex::sit().
-  void sit(uint32_t line) noexcept {
+  /// RegistryMutex::use_badge_of().
+  void use_badge_of(uint32_t line) noexcept {
     line_ = line;
-    mutex_.sit(line);
+    mutex_.use_badge_of(line);
   }
   /// Nullptr in a process that holds no line.
   Hand * own_hand() noexcept { return line_ == nothing ? nullptr : &header().hands[line_]; }
@@ -181,7 +181,7 @@ public:
   /// Calls `visit(slot, incarnation)` for each endpoint in the bucket of a topic, from the youngest
   /// on, until it returns false; other topics may share the bucket. Needs no lock. Endpoints that
   /// leave meanwhile may be visited or missed; all others are visited, once
-  /// (docs/model/next/chains.pml).
+  /// (docs/model/chains.pml).
   void walk_bucket(
     uint64_t topic_hash, const std::function<bool(uint32_t, uint32_t)> & visit) const;
 

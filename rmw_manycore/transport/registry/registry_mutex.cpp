@@ -22,36 +22,36 @@ RegistryMutex::RegistryMutex(
   threads_.initialize();
 }
 
-/// The thread has ended when the kernel has marked what it occupied. The line tells more: while it
-/// is held, its seat's owner lives, though another mark may mislead the kernel (see RobustMutex).
-/// A seat that does not exist is a damaged ticket, which no thread will give back.
-bool RegistryMutex::has_ended(uint32_t seat) const {
-  if (seat >= lock_seat_count) {
+/// The thread has ended when the kernel has marked what it held. The line tells more: while it
+/// is held, its badge's owner lives, though another mark may mislead the kernel (see RobustMutex).
+/// A badge that does not exist is a damaged ticket, which no thread will give back.
+bool RegistryMutex::has_ended(uint32_t badge) const {
+  if (badge >= lock_badge_count) {
     return true;
   }
-  const bool is_line_held = seat < lifeline_count && lifelines_.is_locked(seat);
-  return !is_line_held && !header_.seats[seat].occupied.is_locked();
+  const bool is_line_held = badge < lifeline_count && lifelines_.is_locked(badge);
+  return !is_line_held && !header_.badges[badge].held.is_locked();
 }
 
-/// Occupies the seat, or returns false at the deadline. The mark of a predecessor is gone: it is
+/// Holds the badge, or returns false at the deadline. The mark of a predecessor is gone: it is
 /// dead, or this thread is a guest.
-bool RegistryMutex::occupy(uint32_t seat, int64_t deadline_ns) {
-  LockSeat & own = header_.seats[seat];
-  const RobustMutex::Outcome outcome = own.occupied.lock(left_until(deadline_ns));
+bool RegistryMutex::hold(uint32_t badge, int64_t deadline_ns) {
+  LockBadge & own = header_.badges[badge];
+  const RobustMutex::Outcome outcome = own.held.lock(left_until(deadline_ns));
   if (outcome == RobustMutex::Outcome::timed_out) {
     return false;
   }
   if (outcome == RobustMutex::Outcome::owner_died) {
-    own.occupied.mark_consistent();
+    own.held.mark_consistent();
   }
   own.pid_namespace = pid_namespace_;
   return true;
 }
 
-/// The file stays locked until the seat is vacated, and the kernel opens it to the next guest only
-/// after the last thread of a killed one has ended, as RobustMutex requires. A mark that is found
-/// then is one that the kernel failed to clear. False at the deadline if the registry is locked;
-/// throws Error{timeout} if only a guest keeps this one from trying.
+/// The file stays locked until the badge is given back, and the kernel opens it to the next guest
+/// only after the last thread of a killed one has ended, as RobustMutex requires. A mark that is
+/// found then is one that the kernel failed to clear. False at the deadline if the registry is
+/// locked; throws Error{timeout} if only a guest keeps this one from trying.
 bool RegistryMutex::lock_guest_file(Taken & taken, int64_t deadline_ns) {
   try {
     const int wait_ms = static_cast<int>(left_until(deadline_ns) / (ns_per_s / 1000));
@@ -65,8 +65,8 @@ bool RegistryMutex::lock_guest_file(Taken & taken, int64_t deadline_ns) {
   if (!taken.guest_file) {
     throw Error(ErrorCode::system, file_ + " was removed; try again");
   }
-  RobustMutex & occupied = header_.seats[guest_seat].occupied;
-  occupied.mark_owner_died(occupied.owner());
+  RobustMutex & held = header_.badges[guest_badge].held;
+  held.mark_owner_died(held.owner());
   return true;
 }
 
@@ -81,7 +81,7 @@ std::optional<RegistryMutex::Taken> RegistryMutex::try_take(long wait_ns) {
   }
   try {
     if (
-      std::optional<Taken> taken = take_from(line_ == nothing ? guest_seat : line_, deadline_ns)) {
+      std::optional<Taken> taken = take_with(line_ == nothing ? guest_badge : line_, deadline_ns)) {
       return taken;
     }
   } catch (...) {
@@ -92,27 +92,27 @@ std::optional<RegistryMutex::Taken> RegistryMutex::try_take(long wait_ns) {
   return std::nullopt;
 }
 
-std::optional<RegistryMutex::Taken> RegistryMutex::take_from(uint32_t seat, int64_t deadline_ns) {
-  Taken taken{seat, false, {}};
-  if (seat == guest_seat && !lock_guest_file(taken, deadline_ns)) {
+std::optional<RegistryMutex::Taken> RegistryMutex::take_with(uint32_t badge, int64_t deadline_ns) {
+  Taken taken{badge, false, {}};
+  if (badge == guest_badge && !lock_guest_file(taken, deadline_ns)) {
     return std::nullopt;
   }
-  if (!occupy(seat, deadline_ns)) {
+  if (!hold(badge, deadline_ns)) {
     return std::nullopt;
   }
-  LockSeat & own = header_.seats[seat];
+  LockBadge & own = header_.badges[badge];
   try {
     const auto outcome = header_.mutex.lock(
-      seat, own, [this](uint32_t other) { return has_ended(other); }, left_until(deadline_ns));
+      badge, own, [this](uint32_t other) { return has_ended(other); }, left_until(deadline_ns));
     if (outcome != RecoverableMutex::Outcome::timed_out) {
       taken.owner_died = outcome == RecoverableMutex::Outcome::owner_died;
       return taken;
     }
   } catch (...) {
-    own.occupied.unlock();
+    own.held.unlock();
     throw;
   }
-  own.occupied.unlock();
+  own.held.unlock();
   return std::nullopt;
 }
 
@@ -152,11 +152,11 @@ RegistryMutex::Taken RegistryMutex::take_while_owners_run() {
 }
 
 void RegistryMutex::give_back(Taken & taken) noexcept {
-  if (is_waited_for(taken.seat)) {
+  if (is_waited_for(taken.badge)) {
     others_first_until_ns_.store(monotonic_ns() + others_first_ns, std::memory_order_relaxed);
   }
-  header_.mutex.unlock(taken.seat);
-  header_.seats[taken.seat].occupied.unlock();
+  header_.mutex.unlock(taken.badge);
+  header_.badges[taken.badge].held.unlock();
   taken.guest_file.reset();
   threads_.unlock();
 }
@@ -171,9 +171,9 @@ void RegistryMutex::let_others_go_first() const noexcept {
   }
 }
 
-bool RegistryMutex::is_waited_for(uint32_t seat) const noexcept {
+bool RegistryMutex::is_waited_for(uint32_t badge) const noexcept {
   return header_.mutex.is_waited_for() || threads_.is_waited_for() ||
-         header_.seats[seat].occupied.is_waited_for();
+         header_.badges[badge].held.is_waited_for();
 }
 
 long RegistryMutex::parting_wait_ns() const noexcept {
@@ -181,12 +181,12 @@ long RegistryMutex::parting_wait_ns() const noexcept {
 }
 
 LockOwner RegistryMutex::owner() const noexcept {
-  const std::optional<uint32_t> seat = header_.mutex.owner();
-  if (!seat || *seat >= lock_seat_count) {
+  const std::optional<uint32_t> badge = header_.mutex.owner();
+  if (!badge || *badge >= lock_badge_count) {
     return {};
   }
-  const LockSeat & taken = header_.seats[*seat];
-  return {taken.occupied.owner(), taken.pid_namespace};
+  const LockBadge & taken = header_.badges[*badge];
+  return {taken.held.owner(), taken.pid_namespace};
 }
 
 }  // namespace manycore

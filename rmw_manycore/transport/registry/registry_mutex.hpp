@@ -12,8 +12,8 @@
 
 namespace manycore {
 
-/// The registry lock as this process takes it: from the seat of the line that it holds, or from the
-/// guest seat. See docs/design/registry_lock.md.
+/// The registry lock as this process takes it: with the badge of the line that it holds, or with
+/// the guest badge. See docs/design/registry_lock.md.
 class RegistryMutex {
 public:
   static constexpr long usual_wait_ns = 5'000'000'000;
@@ -22,16 +22,16 @@ public:
 
   /// The lock, taken.
   struct Taken {
-    uint32_t seat;
+    uint32_t badge;
     bool owner_died;
     std::optional<FileLock> guest_file;  ///< keeps other guests out
   };
 
   RegistryMutex(RegistryHeader & header, const Lifelines & lifelines, const std::string & file);
 
-  /// From now on takes the lock from the seat of a line that this process holds, until it has left
+  /// From now on takes the lock with the badge of a line that this process holds, until it has left
   /// the platform. Called before other threads use this object.
-  void sit(uint32_t line) noexcept { line_ = line; }
+  void use_badge_of(uint32_t line) noexcept { line_ = line; }
 
   /// Throws Error{timeout} after `wait_ns`. A thread that retakes the lock at once first lets
   /// waiting threads run, unless `wait_ns` is short.
@@ -42,18 +42,18 @@ public:
   void give_back(Taken & taken) noexcept;
 
   /// True if a thread may be waiting for the caller, the owner.
-  bool is_waited_for(uint32_t seat) const noexcept;
+  bool is_waited_for(uint32_t badge) const noexcept;
   /// See Registry::parting_wait_ns().
   long parting_wait_ns() const noexcept;
   /// The thread that owns the lock at this moment.
   LockOwner owner() const noexcept;
 
 private:
-  bool has_ended(uint32_t seat) const;
+  bool has_ended(uint32_t badge) const;
   bool lock_guest_file(Taken & taken, int64_t deadline_ns);
-  bool occupy(uint32_t seat, int64_t deadline_ns);
+  bool hold(uint32_t badge, int64_t deadline_ns);
   std::optional<Taken> try_take(long wait_ns);
-  std::optional<Taken> take_from(uint32_t seat, int64_t deadline_ns);
+  std::optional<Taken> take_with(uint32_t badge, int64_t deadline_ns);
   [[noreturn]] void refuse(long wait_ns) const;
   void let_others_go_first() const noexcept;
 
@@ -63,7 +63,7 @@ private:
   const uint64_t pid_namespace_ = own_pid_namespace();
   uint32_t line_ = nothing;
   /// Of this process's threads, in its own memory: so one of them at a time locks the mutex of the
-  /// seat, and none is killed while it waits for that.
+  /// badge, and none is killed while it waits for that.
   RobustMutex threads_;
   std::atomic<bool> stayed_locked_{false};
   std::atomic<int64_t> others_first_until_ns_{0};  ///< CLOCK_MONOTONIC
