@@ -4,13 +4,14 @@
 #include <algorithm>
 
 #include "platform/clock.hpp"
+#include "platform/cpu.hpp"
 #include "platform/futex.hpp"
 
 namespace manycore {
 namespace {
 
-// A ticket: | takes : 52 | badge + 1 : 11 | waiters : 1 |. The flag lies in the lower half, on which
-// waiting threads sleep.
+// A ticket: | takes : 52 | badge + 1 : 11 | waiters : 1 |. The flag lies in the lower half, on
+// which waiting threads sleep.
 constexpr uint64_t waiters = 1;
 constexpr int badge_shift = 1;
 constexpr int takes_shift = 12;
@@ -20,6 +21,9 @@ constexpr uint64_t badge_mask = (uint64_t{1} << (takes_shift - badge_shift)) - 1
 // was to wake it is killed before it does.
 constexpr int64_t first_look_ns = 1'000'000;
 constexpr int64_t last_look_ns = 128'000'000;
+
+// As long as it takes to sleep and be woken. Most holds end within a few microseconds.
+constexpr int64_t spin_ns = 50'000;
 
 constexpr uint64_t make_ticket(uint32_t badge, uint64_t takes) {
   return takes << takes_shift | (uint64_t{badge} + 1) << badge_shift;
@@ -54,6 +58,21 @@ bool RecoverableMutex::announce_waiter(uint64_t & seen) noexcept {
   return true;
 }
 
+/// True if this thread took the mutex. A thread that finds another one waiting sleeps at once: it
+/// would overtake that one.
+bool RecoverableMutex::spin(uint64_t & seen, uint64_t ticket) noexcept {
+  const int64_t until_ns = monotonic_ns() + spin_ns;
+  while ((seen & waiters) == 0 && monotonic_ns() < until_ns) {
+    pause_cpu();
+    seen = 0;
+    if (ticket_.load(std::memory_order_relaxed) == 0 && try_take(seen, ticket)) {
+      return true;
+    }
+    seen = ticket_.load(std::memory_order_acquire);
+  }
+  return false;
+}
+
 void RecoverableMutex::sleep(uint64_t seen, int64_t until_ns) noexcept {
   futex_wait(lower_half_of(ticket_), static_cast<uint32_t>(seen), until_ns);
 }
@@ -62,7 +81,7 @@ RecoverableMutex::Outcome RecoverableMutex::lock(
   uint32_t badge, LockBadge & own, const HasEnded & has_ended, long timeout_ns) {
   const uint64_t ticket = make_ticket(badge, ++own.takes);
   uint64_t seen = 0;
-  if (try_take(seen, ticket)) {
+  if (try_take(seen, ticket) || (timeout_ns > 0 && spin(seen, ticket))) {
     return Outcome::locked;
   }
   int64_t now_ns = monotonic_ns();
@@ -70,7 +89,8 @@ RecoverableMutex::Outcome RecoverableMutex::lock(
   int64_t look_ns = first_look_ns;
   while (true) {
     // If the ticket is still there when this thread takes the mutex, its owner has not unlocked,
-    // and has ended, so it never will. A ticket of this thread's own badge is that of a predecessor.
+    // and has ended, so it never will. A ticket of this thread's own badge is that of a
+    // predecessor.
     const bool owner_died = seen != 0 && (badge_of(seen) == badge || has_ended(badge_of(seen)));
     if (seen == 0 || owner_died) {
       // Other threads may be asleep, so the flag stays set.

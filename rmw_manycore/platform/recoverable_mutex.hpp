@@ -43,6 +43,7 @@ public:
 
 private:
   bool try_take(uint64_t & seen, uint64_t ticket) noexcept;
+  bool spin(uint64_t & seen, uint64_t ticket) noexcept;
   bool announce_waiter(uint64_t & seen) noexcept;
   void sleep(uint64_t seen, int64_t until_ns) noexcept;
 
