@@ -103,7 +103,7 @@ struct Fixture {
     CHECK(
       inspection.live_endpoints() ==
       3 + publishers.size() + subscriptions.size() + resident_endpoints);
-    CHECK(inspection.readers_of(*publisher) == 2);
+    CHECK(inspection.readers_of(*publisher).size() == 2);
     CHECK(publisher->matched().current == 2);
     CHECK(subscription->matched().current == 1);
   }

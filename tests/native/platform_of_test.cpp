@@ -192,7 +192,7 @@ Standstill::~Standstill() { kill(pid_, SIGCONT); }
 
 Inspection::Inspection(const TestPlatform & platform) : registry_(platform.paths()) {
   try {
-    registry_.sit(process_of(registry_, ProcessIdentity::own()));
+    registry_.use_badge_of(process_of(registry_, ProcessIdentity::own()));
   } catch (const Error &) {
     // not a member
   }
@@ -241,9 +241,10 @@ uint32_t Inspection::generations_of(const Publisher & publisher) {
   return count;
 }
 
-uint32_t Inspection::readers_of(const Publisher & publisher) {
-  const EndpointEntry & entry = registry_.endpoints()[slot_of(publisher.gid())];
-  return static_cast<uint32_t>(peers_of(registry_, entry).size());
+std::vector<Peer> Inspection::readers_of(const Publisher & publisher) {
+  Peers peers(registry_, registry_.endpoints()[slot_of(publisher.gid())]);
+  peers.refresh();
+  return peers.all();
 }
 
 TopicDsmHeader & Inspection::header_of(const Publisher & publisher) {

@@ -10,6 +10,7 @@
 
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
+#include "transport/peers/peers.hpp"
 #include "transport/process.hpp"
 #include "transport/registry/registry.hpp"
 
@@ -53,7 +54,7 @@ private:
 /// The registry seen from outside, to inspect what the interface does not show.
 class Inspection {
 public:
-  /// Takes the registry lock from the seat of this process, if it has joined, and otherwise as a
+  /// Takes the registry lock with the badge of this process, if it has joined, and otherwise as a
   /// guest.
   explicit Inspection(const TestPlatform & platform);
 
@@ -67,8 +68,8 @@ public:
   uint32_t slot_of(const manycore::Gid & gid);
   /// Number of generations of a publisher's topic DSM that hold memory.
   uint32_t generations_of(const manycore::Publisher & publisher);
-  /// Number of entries in use in a publisher's reader table.
-  uint32_t readers_of(const manycore::Publisher & publisher);
+  /// The subscriptions that a publisher is matched with.
+  std::vector<manycore::Peer> readers_of(const manycore::Publisher & publisher);
   manycore::TopicDsmHeader & header_of(const manycore::Publisher & publisher);
   manycore::SubscriptionHeader & header_of(const manycore::Subscription & subscription);
   /// Endpoints that are closed, but whose memory is not freed yet.

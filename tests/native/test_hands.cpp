@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
 // Blocks in the hand of a process, which backs and frees them without the registry lock: landings,
-// large blocks of reader and source tables, large queues, and the blocks of closed endpoints.
+// large blocks of seats, large queues, and the blocks of closed endpoints.
 #include <doctest/doctest.h>
 
 #include <sys/mount.h>

@@ -129,7 +129,7 @@ TEST_CASE("killed thread by thread while it closes: nothing is freed that publis
   CHECK(refusal.code == ErrorCode::timeout);
   child.kill();
   f.wait_until_alone();
-  CHECK(f.inspection.readers_of(*f.publisher) == 2);
+  CHECK(f.inspection.readers_of(*f.publisher).size() == 2);
   f.check_that_it_goes_on();
   CHECK(f.inspection.used_bytes() == used);
 }

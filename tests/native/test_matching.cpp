@@ -252,7 +252,7 @@ TEST_CASE("endpoints that are created at the same time are matched once each") {
     CHECK(publishers[i]->matched().total == count);
     CHECK(subscriptions[i]->matched().current == count);
     CHECK(subscriptions[i]->matched().total == count);
-    CHECK(f.inspection.readers_of(*publishers[i]) == count);
+    CHECK(f.inspection.readers_of(*publishers[i]).size() == count);
   }
 }
 

@@ -123,7 +123,7 @@ TEST_CASE("a repair tells each endpoint to look again") {
 }
 
 // Endpoints of this and of another topic come and go in the same slots meanwhile. It cannot show
-// that a walk is right at each instruction; docs/model/next/chains.pml does that.
+// that a walk is right at each instruction; docs/model/chains.pml does that.
 TEST_CASE("peers that stay are in the list, once, whatever comes and goes meanwhile") {
   Fixture f;
   const auto own = f.publisher();

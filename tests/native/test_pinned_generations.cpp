@@ -48,8 +48,7 @@ struct Fixture {
   /// Word of the child's subscription, the only reader.
   const std::atomic<uint64_t> & reading() {
     Registry & registry = inspection.registry();
-    const EndpointEntry & entry = registry.endpoints()[inspection.slot_of(publisher->gid())];
-    const Peer reader = peers_of(registry, entry).at(0);
+    const Peer reader = inspection.readers_of(*publisher).at(0);
     return registry.clusters().find<SubscriptionHeader>(reader.block)->reading;
   }
   uint64_t header_only() {

@@ -117,8 +117,8 @@ TEST_CASE(
     publish(*second, 1);
   }
   f.wait_until_alone();
-  CHECK(f.inspection.readers_of(*first) == 0);
-  CHECK(f.inspection.readers_of(*second) == 0);
+  CHECK(f.inspection.readers_of(*first).empty());
+  CHECK(f.inspection.readers_of(*second).empty());
   CHECK(f.inspection.used_bytes() == used);
 }
 

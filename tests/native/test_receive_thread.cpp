@@ -125,7 +125,7 @@ TEST_CASE("a message for one subscription is pushed to that one, if it is still 
   const uint32_t slot = f.inspection.slot_of(f.publisher->gid());
   Registry & registry = f.inspection.registry();
   const EndpointEntry & publisher = registry.endpoints()[slot];
-  const Peer reader = peers_of(registry, publisher).back();
+  const Peer reader = f.inspection.readers_of(*f.publisher).back();
   EmcosMessage message{};
   message.kind = EmcosMessageKind::publish;
   message.topic_dsm = publisher.block;

@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Seats: what a publisher keeps of each reader. Their orders of stores: docs/model/next/seats.pml.
+// Seats: what a publisher keeps of each reader. Their orders of stores: docs/model/seats.pml.
 #include <doctest/doctest.h>
 
 #include "drivers_of_test.hpp"

@@ -61,12 +61,12 @@ TEST_CASE("a subscription is closed by a process that reaches its publisher's cl
   {
     const NoReapers none(f.platform);
     f.close();
-    CHECK(f.inspection->readers_of(*publisher) == 0);
+    CHECK(f.inspection->readers_of(*publisher).empty());
     CHECK(f.inspection->closing_endpoints() == 1);
     publish(*publisher, 2);
   }
   f.wait_until_closed();
-  CHECK(f.inspection->readers_of(*publisher) == 0);
+  CHECK(f.inspection->readers_of(*publisher).empty());
   CHECK(publisher->matched().current == 0);
   publish(*publisher, 3);
 }
@@ -97,7 +97,7 @@ TEST_CASE("an endpoint that no other process closes is closed with its own proce
     SUBCASE("which is killed") { f.node.kill(); }
   }
   f.wait_until_closed();
-  CHECK(f.inspection->readers_of(*publisher) == 0);
+  CHECK(f.inspection->readers_of(*publisher).empty());
 }
 
 TEST_CASE("an endpoint without a match is freed by a process that reaches all clusters") {

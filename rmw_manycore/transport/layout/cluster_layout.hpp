@@ -23,7 +23,7 @@ struct ClusterHeader {
   /// (derived).
   std::atomic<uint64_t> free_from;
   std::atomic<uint64_t> used_before;
-  /// Odd while the receive thread follows references; see docs/design/freeing.md.
+  /// Odd while the receive thread follows references; see docs/design/rows_seats_hands.md.
   alignas(64) std::atomic<uint64_t> phase;
   /// The same of the threads that fill landings: of messages and of sessions.
   std::atomic<uint64_t> mover_phases[2];

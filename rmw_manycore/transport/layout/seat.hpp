@@ -18,7 +18,7 @@ constexpr uint32_t incarnation_in(uint64_t word) noexcept {
 /// What one subscription has read of a topic DSM. The publisher gives the seat, and its first
 /// values, before it owes the subscription a record; once the publisher is closed, the process that
 /// closed it does. From then on the subscription writes `taken` and `accounted`. The publisher
-/// takes the seat back when the subscription's row is not live. See docs/model/next/seats.pml.
+/// takes the seat back when the subscription's row is not live. See docs/model/seats.pml.
 struct alignas(64) Seat {
   std::atomic<uint64_t> owner;  ///< endpoint_word() of the subscription; 0 = free
   std::atomic<uint64_t> taken;  ///< the reader is done with all records up to this number

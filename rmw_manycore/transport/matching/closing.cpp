@@ -3,7 +3,7 @@
 
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/matching/orphans.hpp"
-#include "transport/peers/peers.hpp"
+#include "transport/peers/endpoint_terms.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/registry/topic_rows.hpp"
 #include "transport/topic_dsm/waiting_publisher.hpp"
@@ -25,16 +25,24 @@ void begin_publisher(Registry & registry, EndpointEntry & entry, bool died) {
   orphans::give_seats_to_readers_of_history(registry, *cluster, entry, *dsm);
 }
 
-/// Publishers that wait for a subscription (KEEP_ALL) look again: its row is closed.
-void notify_waiting_publishers(Registry & registry, const EndpointEntry & entry) {
-  for_each_row(
-    registry, entry.topic, EndpointKind::publisher, [&](EndpointEntry & other, uint32_t) {
-      TopicDsmHeader * const dsm =
-        is_live(other) ? registry.clusters().find<TopicDsmHeader>(other.block) : nullptr;
-      if (dsm != nullptr) {
-        notify_waiting_publisher(*dsm);
-      }
-    });
+/// Wakes the processes of peers that wait for events, and publishers that wait for a closed
+/// subscription (KEEP_ALL).
+void notify_peers(Registry & registry, const EndpointEntry & entry) {
+  const EndpointTerms terms(entry);
+  const EndpointKind kind =
+    entry.kind == EndpointKind::publisher ? EndpointKind::subscription : EndpointKind::publisher;
+  for_each_row(registry, entry.topic, kind, [&](EndpointEntry & other, uint32_t) {
+    if (!is_live(other) || fit_of(terms, other).kind != Fit::Kind::matched) {
+      return;
+    }
+    notify_event_watchers(registry, other.process.load());
+    TopicDsmHeader * const dsm = kind == EndpointKind::publisher
+                                   ? registry.clusters().find<TopicDsmHeader>(other.block)
+                                   : nullptr;
+    if (dsm != nullptr) {
+      notify_waiting_publisher(*dsm);
+    }
+  });
 }
 
 /// Stored in this order: how an endpoint ended is known once its row is not live.
@@ -61,15 +69,9 @@ void close(Registry & registry, uint32_t endpoint, bool died, std::vector<uint32
   if (is_publisher) {
     begin_publisher(registry, entry, died);
   }
-  const std::vector<Peer> peers = peers_of(registry, entry);
   close_row(registry, endpoint, died);
-  for (const Peer & peer : peers) {
-    notify_event_watchers(registry, peer.process);
-  }
+  notify_peers(registry, entry);
   try {
-    if (!is_publisher) {
-      notify_waiting_publishers(registry, entry);
-    }
     orphans::cut(registry, entry.topic, unwanted);
   } catch (const ClusterUnmappable &) {
     // The sweep of this endpoint finds it `in_use`, and the reaper, which has descriptors of its

@@ -3,95 +3,16 @@
 
 #include <algorithm>
 #include <cstring>
-#include <optional>
 #include <vector>
 
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/peers/endpoint_terms.hpp"
-#include "transport/registry/block_in_hand.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/registry/snapshot.hpp"
 #include "transport/transfer/transfer.hpp"
 
 namespace manycore::joining {
 namespace {
-
-/// Endpoints between which records are transferred.
-struct Pair {
-  uint32_t publisher;
-  uint32_t publisher_incarnation;
-  uint32_t subscription;
-  uint32_t subscription_incarnation;
-};
-
-bool is_there(Registry & registry, uint32_t slot, uint32_t incarnation) {
-  return registry.endpoints().is_live(slot) &&
-         registry.endpoints()[slot].slot.incarnation.load() == incarnation;
-}
-
-/// Attaches room for the publisher's records if it is still wanted and none is there. Returns the
-/// block that has to be in hand first.
-std::optional<NeededBlock> attach(Registry & registry, const Pair & pair, BlockInHand * hand) {
-  if (
-    !is_there(registry, pair.publisher, pair.publisher_incarnation) ||
-    !is_there(registry, pair.subscription, pair.subscription_incarnation)) {
-    return std::nullopt;
-  }
-  const EndpointEntry & publisher = registry.endpoints()[pair.publisher];
-  Cluster & from = registry.clusters().at(publisher.cluster);
-  Cluster & to = registry.clusters().at(registry.endpoints()[pair.subscription].cluster);
-  auto * const dsm = from.find<TopicDsmHeader>(publisher.block.offset());
-  if (dsm == nullptr) {
-    throw Error(
-      ErrorCode::corrupt, "the registry is damaged; stop the nodes, run 'manycore clean'");
-  }
-  transfer::MatchRoom room(registry, publisher, *dsm, to, hand);
-  if (room.needed()) {
-    return room.needed();
-  }
-  room.attach();
-  registry.raise_changes(publisher.topic_hash);
-  return std::nullopt;
-}
-
-/// False if there is no room, and no endpoint that is created at the same time was making the same
-/// block: the next attempt may find that.
-bool make_block(BlockInHand & hand, const Membership & membership, const NeededBlock & needed) {
-  try {
-    hand.make(membership, needed);
-    return true;
-  } catch (const Error & error) {
-    if (error.code() != ErrorCode::no_space) {
-      throw;
-    }
-    return hand.await_another(needed);
-  }
-}
-
-/// Another endpoint's block may have been attached since the last attempt, so a lack of room is an
-/// error only the second time.
-void make_room(Registry & registry, const Membership & membership, const Pair & pair) {
-  std::optional<BlockInHand> hand;
-  bool lacks_room = false;
-  while (true) {
-    std::optional<NeededBlock> needed;
-    {
-      const Registry::Lock lock(registry);
-      membership.require();
-      needed = attach(registry, pair, hand ? &*hand : nullptr);
-    }
-    if (!needed) {
-      return;
-    }
-    if (!hand) {
-      hand.emplace(registry);
-    }
-    if (lacks_room) {
-      hand->make(membership, *needed);
-    }
-    lacks_room = !lacks_room && !make_block(*hand, membership, *needed);
-  }
-}
 
 /// An endpoint that the new one is matched with, or is found incompatible with.
 struct Other {
@@ -164,9 +85,10 @@ void join(Registry & registry, const Membership & membership, uint32_t endpoint)
   for (const Other & other : others) {
     if (other.is_matched && entry.transfer != Transfer::dsm && other.cluster != entry.cluster) {
       registry.map_cluster(other.cluster);
-      const Pair pair = is_publisher ? Pair{endpoint, incarnation, other.slot, other.incarnation}
-                                     : Pair{other.slot, other.incarnation, endpoint, incarnation};
-      make_room(registry, membership, pair);
+      transfer::make_room(
+        registry, membership,
+        is_publisher ? transfer::Ends{endpoint, incarnation, other.slot, other.incarnation}
+                     : transfer::Ends{other.slot, other.incarnation, endpoint, incarnation});
     }
   }
   look_for_history(registry, entry, others);

@@ -8,7 +8,7 @@
 #include "transport/registry/registry.hpp"
 
 /// Publishers that are closed and whose messages subscriptions may still take. The caller holds the
-/// registry lock. All throw ClusterUnmappable. See docs/design/freeing.md.
+/// registry lock. All throw ClusterUnmappable. See docs/design/rows_seats_hands.md.
 namespace manycore::orphans {
 
 /// Gives a seat to each reader of the history that has none: it is owed all that is left of it, of

@@ -115,7 +115,7 @@ void Registry::mark_blocks_in_hands() noexcept {
 
 /// The links are stored from the oldest endpoint on, the buckets last: at any moment each link
 /// leads to older endpoints of its bucket, and a walk that begins meanwhile finds what the dead
-/// owner left (docs/model/next/chains.pml).
+/// owner left (docs/model/chains.pml).
 void Registry::link_all_endpoints() {
   RegistryHeader & head = header();
   head.closing.clear();

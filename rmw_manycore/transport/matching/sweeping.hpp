@@ -4,8 +4,8 @@
 #include "transport/registry/registry.hpp"
 
 /// Frees what closed endpoints hold, as soon as no process can be using it (see
-/// docs/design/freeing.md). What is left to free stands in shared memory, so any process goes on
-/// where another one died.
+/// docs/design/rows_seats_hands.md). What is left to free stands in shared memory, so any process
+/// goes on where another one died.
 namespace manycore::sweeping {
 
 /// `freed`: nothing is left of the endpoint. `kept`: a reader wants the content and sweeps after

@@ -107,10 +107,4 @@ void Peers::consider(uint32_t slot, const EntryCopy<EndpointEntry> & row) {
   }
 }
 
-std::vector<Peer> peers_of(Registry & registry, const EndpointEntry & entry) {
-  Peers peers(registry, entry);
-  peers.refresh();
-  return peers.all();
-}
-
 }  // namespace manycore

@@ -26,7 +26,7 @@ struct Peer {
 ///
 /// A walk begins at the youngest endpoint and ends at the first one that an earlier walk has seen:
 /// those behind it have been seen as well. A peer leaves the list only because its own row says
-/// that it is gone, never because a walk did not find it. See docs/model/next/peers.pml.
+/// that it is gone, never because a walk did not find it. See docs/model/peers.pml.
 class Peers {
 public:
   /// Which rows are peers.
@@ -80,8 +80,5 @@ private:
   bool has_walked_ = false;
   uint32_t newest_order_ = 0;  ///< of an endpoint seen by an earlier walk
 };
-
-/// The peers of an endpoint now. May throw std::bad_alloc.
-std::vector<Peer> peers_of(Registry & registry, const EndpointEntry & entry);
 
 }  // namespace manycore

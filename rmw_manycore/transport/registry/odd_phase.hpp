@@ -8,7 +8,7 @@ namespace manycore {
 
 /// Keeps a thread's phase odd during its lifetime. The thread may then follow references into
 /// memory that another process frees only after it has seen the phase even or changed. See
-/// docs/design/freeing.md.
+/// docs/design/rows_seats_hands.md.
 class OddPhase {
 public:
   /// A phase left odd by a dead predecessor stays odd. seq_cst: Dekker with the process that frees,

@@ -7,15 +7,17 @@
 namespace manycore {
 
 /// What one process knows of publishers that may still push to a closed subscription: a publisher
-/// that was seen outside its phase once, or in another one, does not find the subscription any
-/// more. Kept between attempts to free it, so publishers that are busy need not be outside at a
-/// time.
+/// that is outside its phase, or in another one than before, does not find the subscription any
+/// more. Kept between attempts to free it, so busy publishers need not be outside at one time.
 class PhasesSeen {
 public:
   /// Endpoints are named by endpoint_word(). `phase`: the publisher's, loaded now.
   bool is_out(uint64_t subscription, uint64_t publisher, uint64_t phase) {
+    if (phase % 2 == 0) {
+      return true;
+    }
     uint64_t & seen = seen_[subscription].try_emplace(publisher, phase).first->second;
-    if (phase % 2 == 0 || phase != seen) {
+    if (phase != seen) {
       seen = was_out;
     }
     return seen == was_out;

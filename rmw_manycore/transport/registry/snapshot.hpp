@@ -10,7 +10,7 @@
 namespace manycore {
 
 /// Reads of the registry without its lock: a stopped reader delays no change. See
-/// docs/design/registry.md.
+/// docs/design/rows_seats_hands.md.
 
 /// A copy of one table entry. It is consistent if the slot was live, with the same incarnation,
 /// before and after the copy.

@@ -46,7 +46,7 @@ private:
 
 /// The readers of a publisher, in a private list that is rebuilt when rows of its topic changed.
 /// New ones get a seat. Its addresses are valid while the publisher's phase is odd (see
-/// docs/design/freeing.md).
+/// docs/design/rows_seats_hands.md).
 class ReaderList {
 public:
   ReaderList(Registry & registry, Cluster & cluster, TopicDsmHeader & dsm, EndpointEntry & own);

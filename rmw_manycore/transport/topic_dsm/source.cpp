@@ -49,11 +49,7 @@ Source::Source(
 /// bytes alone, or this reader sees that the number is gone.
 bool Source::begin_look(uint64_t word) noexcept {
   header_->reading.store(word, std::memory_order_seq_cst);
-  if (!may_look()) {
-    return false;
-  }
-  meet();
-  return true;
+  return may_look();
 }
 
 /// seq_cst: the process that frees stores the row's state before it loads `reading`.
@@ -67,18 +63,22 @@ bool Source::may_look() const noexcept {
          row_->slot.incarnation.load(std::memory_order_seq_cst) == incarnation_;
 }
 
-/// The seat stays this reader's while the subscription's row is live.
+/// The seat stays this reader's while the subscription's row is live. Of the history, records may
+/// be taken or noted before there is a seat.
 void Source::meet() noexcept {
   if (seat_ != nullptr) {
     return;
   }
   seat_ = find_seat(*cluster_, *dsm_, reader_);
-  if (seat_ != nullptr && !reads_history_) {
-    noted_ = std::max(noted_, seat_->taken.load(std::memory_order_relaxed));
-    taken_ = std::max(taken_, noted_);
-  } else if (seat_ != nullptr && taken_ > seat_->taken.load(std::memory_order_relaxed)) {
-    seat_->taken.store(taken_, std::memory_order_seq_cst);  // of the history, without a seat
+  if (seat_ == nullptr) {
+    return;
   }
+  const uint64_t start = seat_->taken.load(std::memory_order_relaxed);
+  if (taken_ > start) {
+    seat_->taken.store(taken_, std::memory_order_seq_cst);
+  }
+  taken_ = std::max(taken_, start);
+  noted_ = std::max(noted_, start);
 }
 
 LastPublished Source::last_published() const noexcept {
@@ -145,6 +145,7 @@ Source::Claimed Source::claim(const Wanted & wanted, View & view) noexcept {
   if (!begin_look(Reading::of(hint_of(wanted.number)))) {
     return {ClaimResult::not_ours, end_look()};
   }
+  meet();
   const uint64_t number = number_of(wanted);
   const bool is_stale = number == no_record || (wanted.is_from_hint && number <= noted_);
   if (is_stale || (seat_ == nullptr && !reads_history_)) {
@@ -251,18 +252,25 @@ void Source::scan(
   }
 }
 
-bool Source::list_waiting(std::vector<Waiting> & out) noexcept {
-  const auto own_part = static_cast<ptrdiff_t>(out.size());
-  if (!begin_look(Reading::header_only(slot_, incarnation_))) {
-    return end_look();
-  }
-  // Most sources have no new record: a subscription resyncs for each publisher that leaves.
+void Source::scan_all(std::vector<Waiting> & out) noexcept {
+  meet();
   const uint64_t last = this->last();
   if (last > noted_ && (seat_ != nullptr || reads_history_)) {
     for (const GenerationEntry & generation : dsm_->generations) {
       scan(generation, arrived(), last, out);
     }
     noted_ = last;
+  }
+}
+
+bool Source::list_waiting(std::vector<Waiting> & out) noexcept {
+  const auto own_part = static_cast<ptrdiff_t>(out.size());
+  if (!begin_look(Reading::header_only(slot_, incarnation_))) {
+    return end_look();
+  }
+  // Most sources have no new record: a subscription resyncs for each publisher that leaves.
+  if (dsm_->last.load(std::memory_order_seq_cst) > noted_) {
+    scan_all(out);
   }
   order(out, own_part);
   const bool finished = is_finished();
@@ -297,6 +305,7 @@ Source::Settled Source::settle() noexcept {
   if (!begin_look(Reading::header_only(slot_, incarnation_))) {
     return end_look() ? Settled::finished : Settled::yes;  // the process that frees counts
   }
+  meet();
   if (seat_ == nullptr) {
     const bool is_waited_for = end_look();
     return is_waited_for ? Settled::finished : Settled::yes;

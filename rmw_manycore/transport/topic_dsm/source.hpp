@@ -19,7 +19,7 @@ namespace manycore {
 ///
 /// Each look is one word in the subscription's header, `reading`, which names this publisher. After
 /// it is stored, the publisher's row says whether the topic DSM is there
-/// (docs/model/next/topic_dsm.pml).
+/// (docs/model/topic_dsm.pml).
 class Source {
 public:
   /// The result is false (operator bool) if the cluster cannot be mapped, or the row is invalid.
@@ -118,6 +118,8 @@ private:
   uint64_t number_of(const Wanted & wanted) const noexcept;
   /// Release without the end of the look. True if the publisher is gone, and owes nothing more.
   bool note_taken(uint64_t number) noexcept;
+  /// Notes all records up to the newest one.
+  void scan_all(std::vector<Waiting> & out) noexcept;
   void scan(
     const GenerationEntry & generation, const transfer::Arrived & arrived, uint64_t last,
     std::vector<Waiting> & out) noexcept;

@@ -6,32 +6,6 @@
 namespace manycore::transfer {
 namespace {
 
-/// Nothing that was published before is on its way there.
-void begin(LandingHeader & landing, uint64_t last) noexcept {
-  for (std::atomic<uint64_t> * word :
-       {&landing.arrived, &landing.done, &landing.handed, &landing.closed}) {
-    word->store(last, std::memory_order_seq_cst);
-  }
-}
-
-void name_publisher(LandingHeader & landing, const TopicDsmHeader & dsm) noexcept {
-  landing.endpoint.store(dsm.endpoint.load());
-  landing.incarnation.store(dsm.incarnation.load());
-  landing.magic.store(landing_magic, std::memory_order_release);
-}
-
-LandingHeader * retired_landing(
-  const LandingTable & table, const TopicDsmHeader & dsm, const Cluster & receiver) noexcept {
-  const uint64_t offset = table.retired[receiver.id() - 1].load();
-  return offset != 0 ? receiver.find<LandingHeader>(offset, landing_bytes(dsm)) : nullptr;
-}
-
-NeededBlock block_of_landing(const TopicDsmHeader & dsm, const Cluster & receiver) noexcept {
-  const uint64_t bytes = landing_bytes(dsm);
-  const uint64_t data_bytes = dsm.generations[0].data_bytes.load(std::memory_order_relaxed);
-  return {receiver.id(), bytes, bytes - data_bytes, true};
-}
-
 void retire(LandingTable & table, uint32_t receiver) noexcept {
   if (table.landings[receiver - 1].load() != 0) {
     table.retired[receiver - 1].store(table.landings[receiver - 1].load());
@@ -53,52 +27,6 @@ void take_up(
 }
 
 }  // namespace
-
-MatchRoom::MatchRoom(
-  Registry & registry, const EndpointEntry & publisher, TopicDsmHeader & dsm,
-  const Cluster & receiver, BlockInHand * hand)
-: dsm_(dsm),
-  receiver_(receiver),
-  hand_(hand),
-  table_(landing_table(registry.clusters().at(publisher.cluster), dsm)) {
-  const bool is_missing = table_ != nullptr && receiver.id() != publisher.cluster &&
-                          table_->landings[receiver.id() - 1].load() == 0;
-  if (!is_missing) {
-    table_ = nullptr;
-  } else if (publisher.transfer == Transfer::session) {
-    require_free_session(registry, publisher, receiver.id());
-  }
-}
-
-std::optional<NeededBlock> MatchRoom::needed() const noexcept {
-  if (table_ == nullptr || retired_landing(*table_, dsm_, receiver_) != nullptr) {
-    return std::nullopt;
-  }
-  const NeededBlock needed = block_of_landing(dsm_, receiver_);
-  return hand_ != nullptr && hand_->has(needed) ? std::nullopt : std::optional(needed);
-}
-
-void MatchRoom::attach() noexcept {
-  if (table_ == nullptr) {
-    return;
-  }
-  LandingHeader * landing = retired_landing(*table_, dsm_, receiver_);
-  const bool is_new = landing == nullptr;
-  if (is_new) {
-    landing = receiver_.find<LandingHeader>(hand_->block().offset(), landing_bytes(dsm_));
-    if (landing == nullptr) {
-      return;  // damaged
-    }
-    name_publisher(*landing, dsm_);
-  }
-  begin(*landing, dsm_.last.load(std::memory_order_seq_cst));
-  table_->landings[receiver_.id() - 1].store(
-    receiver_.ref_of(landing).offset(), std::memory_order_seq_cst);
-  table_->retired[receiver_.id() - 1].store(0);
-  if (is_new) {
-    hand_->let_go();
-  }
-}
 
 void retire(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept {
   LandingTable * const table = landing_table(cluster, dsm);

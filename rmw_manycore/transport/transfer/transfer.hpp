@@ -18,26 +18,19 @@ namespace manycore::transfer {
 /// Needs no lock. Throws Error{unsupported} for a publisher whose QoS a transfer cannot keep.
 Transfer kind_of(const TopicEntry * configured, const EndpointSpec & spec, EndpointKind kind);
 
-/// Room for a publisher's records in the cluster of a subscription that it is matched with.
-class MatchRoom {
-public:
-  /// Changes nothing. `hand`: nullptr = empty. Throws Error{no_space} for a ninth session, with the
-  /// names of the eight.
-  MatchRoom(
-    Registry & registry, const EndpointEntry & publisher, TopicDsmHeader & dsm,
-    const Cluster & receiver, BlockInHand * hand);
-
-  /// The block that has to be in hand first. Nothing where there is room, or none is needed.
-  std::optional<NeededBlock> needed() const noexcept;
-  /// From here on records arrive there. Nothing is needed.
-  void attach() noexcept;
-
-private:
-  TopicDsmHeader & dsm_;
-  const Cluster & receiver_;
-  BlockInHand * hand_;
-  LandingTable * table_;  ///< nullptr = nothing to do
+/// A publisher and a subscription in another cluster, with which it is matched.
+struct Ends {
+  uint32_t publisher;
+  uint32_t publisher_incarnation;
+  uint32_t subscription;
+  uint32_t subscription_incarnation;
 };
+
+/// Makes room for the publisher's records in the cluster of the subscription, unless there is some,
+/// or one of them has left. This process has mapped both clusters. Takes the registry lock. Throws
+/// Error{no_space}, also for a ninth session, with the names of the eight, and the errors of
+/// `membership`.
+void make_room(Registry & registry, const Membership & membership, const Ends & ends);
 
 /// True where publisher's records reach `receiver` in room of their own, and have it.
 bool has_room(const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver) noexcept;
