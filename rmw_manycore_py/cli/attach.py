@@ -43,10 +43,11 @@ _STDIN, _STDOUT = 0, 1
 )
 @platform_option
 def command(node: str, restarts: bool, keys: str, platform: str) -> None:
-    """Attach to the terminal of NODE, which needs `terminal: true` in its mapfile.
+    """Attach to the terminal of NODE.
 
-    All keys go to NODE, Ctrl-C included. The detach keys leave NODE running. The command ends when
-    NODE ends; it stays attached while NODE is respawned.
+    The node needs `terminal: true` in its mapfile. All keys go to NODE, Ctrl-C included. The
+    detach keys leave NODE running. The command ends when NODE ends; it stays attached while
+    NODE is respawned.
     """
     try:
         detach_keys = DetachKeys(parse_keys(keys))

@@ -30,10 +30,11 @@ from rmw_manycore_py.runs.directory import remove_ended, runs_of
 )
 @json_option
 def command(platforms: tuple[str, ...], logs: bool, force: bool, as_json: bool) -> None:
-    """Remove what dead PLATFORMS left in shared memory; by default, all dead platforms.
+    """Remove what dead PLATFORMS left in shared memory.
 
-    Prints the removed files. Leaves live platforms alone, and fails if PLATFORMS names one. The
-    next start of a platform does the same, unless its files are damaged.
+    By default all dead platforms. Prints the removed files. Leaves live platforms alone, and
+    fails if PLATFORMS names one. The next start of a platform does the same, unless its files
+    are damaged.
     """
     if force and not platforms:
         raise click.UsageError("--force requires PLATFORMS")

@@ -31,10 +31,10 @@ VARIABLE = "_MANYCORE_COMPLETE"  # name defined by click
 @click.argument("shell", type=click.Choice(tuple(SHELLS)), required=False)
 @click.pass_context
 def command(context: click.Context, shell: str | None) -> None:
-    """Print the completion script for SHELL; without SHELL, print how to enable it.
+    """Print the completion script for SHELL.
 
-    Completes verbs, options, nodes, topics, services and actions of the running platform, types,
-    packages, mapfiles and platforms.
+    Without SHELL, print how to enable it. Completes verbs, options, nodes, topics, services and
+    actions of the running platform, types, packages, mapfiles and platforms.
     """
     if shell is None:
         click.echo(_instructions(Path(os.environ.get("SHELL", "")).name))

@@ -61,7 +61,10 @@ _EXAMPLES = examples(
 )
 @json_option
 def command(mapfile: Path, directory: Path, with_figure: bool, as_json: bool) -> None:
-    """Generate topic table, launch scripts, parameter files and memory report of MAPFILE."""
+    """Generate all files that MAPFILE implies.
+
+    Topic table, launch scripts, parameter files and memory report.
+    """
     if with_figure:
         load_figure()
     report = create(mapfile, directory)

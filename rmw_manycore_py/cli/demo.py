@@ -33,9 +33,9 @@ DEFAULT_DURATION_S = 10.0
 @duration_option(DEFAULT_DURATION_S)
 @click.option("--list", "as_list", is_flag=True, help="List the installed mapfiles and exit.")
 def command(mapfile: Path, duration_s: float, as_list: bool) -> None:
-    """Run an installed mapfile for some seconds, then suggest what to try next.
+    """Run an installed mapfile for some seconds.
 
-    NAME defaults to talker_listener.
+    Then suggest what to try next. NAME defaults to talker_listener.
     """
     if as_list:
         _list()

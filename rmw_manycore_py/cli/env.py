@@ -18,9 +18,10 @@ VARIABLES = ("RMW_IMPLEMENTATION", LIBRARY_PATH, WHEELS_BOOTSTRAPPED)
 @click.command("env", epilog=examples('eval "$(manycore env)"', "python talker.py"))
 @json_option
 def command(as_json: bool) -> None:
-    """Print the environment that makes the ROS 2 programs of a shell use rmw_manycore.
+    """Print the environment for ROS 2 programs.
 
-    Python programs only need RMW_IMPLEMENTATION; the other variables are for other languages.
+    It makes the programs of a shell use rmw_manycore. Python programs only need
+    RMW_IMPLEMENTATION; the other variables are for other languages.
     """
     wanted = program_environment({})
     names = [name for name in VARIABLES if name in wanted]

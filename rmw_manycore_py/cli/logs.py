@@ -52,10 +52,11 @@ def command(
     as_json: bool,
     platform: str,
 ) -> None:
-    """Show the output of NODES, by default of all nodes and the run itself; also after their end.
+    """Show the output of NODES, also after their end.
 
-    The last 8 MiB of each node are kept until the next run of the platform, less in runs with many
-    nodes. With --follow, the command ends with the run.
+    By default that of all nodes and of the run itself. The last 8 MiB of each node are kept
+    until the next run of the platform, less in runs with many nodes. With --follow, the command
+    ends with the run.
     """
     runs = runs_of(platform)
     if not runs:

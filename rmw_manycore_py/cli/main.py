@@ -42,11 +42,24 @@ VERBS = {
     "bridge": "rmw_manycore_py.cli.bridge:command",
     "bench": "rmw_manycore_py.cli.bench:command",
 }
+SECTIONS = {
+    "Run": (
+        "run", "up", "ps", "logs", "restart", "attach", "stop", "demo", "map", "create", "bridge",
+    ),
+    "Look": ("status", "top", "view", "trace"),
+    "ROS 2": (
+        "topic", "node", "service", "action", "param", "lifecycle", "interface", "component", "bag",
+    ),
+    "Set up": ("doctor", "clean", "env", "completion"),
+    "Measure": ("bench",),
+    "Case studies": ("ndt", "whill"),
+}  # fmt: skip
 
 
 @click.group(
     cls=LazyGroup,
     commands_at=VERBS,
+    sections=SECTIONS,
     until_ctrl_c=("run", "demo", "logs", "view"),
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=examples(

@@ -17,9 +17,10 @@ from rmw_manycore_py.runs.directory import RunDirectory, all_runs, runs_of
 @any_platform_option
 @json_option
 def command(platform: str | None, as_json: bool) -> None:
-    """Show the nodes of this user's runs, both running and ended ones.
+    """Show the nodes of this user's runs.
 
-    `manycore status` also shows nodes started by hand, by platform.
+    Nodes that have ended are shown as well. `manycore status` also shows nodes started by hand,
+    by platform.
     """
     runs = runs_of(platform) if platform else all_runs()
     rows = [_row(run) for run in runs if run.is_alive]

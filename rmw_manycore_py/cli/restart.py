@@ -25,10 +25,11 @@ LOOK_S = 1.0
 @click.argument("nodes", nargs=-1)
 @platform_option
 def command(nodes: tuple[str, ...], platform: str) -> None:
-    """Restart NODES, by default all, including those that have ended.
+    """Restart NODES, by default all.
 
-    Nodes restart with the settings of their run: to apply a changed mapfile, use `manycore stop`
-    and `up`. Watches the nodes for one second; the exit status is 1 if one ends again in that time.
+    Nodes that have ended are started again. Nodes restart with the settings of their run: to
+    apply a changed mapfile, use `manycore stop` and `up`. Watches the nodes for one second; the
+    exit status is 1 if one ends again in that time.
     """
     runs = living_runs(platform)
     every = [(run, [n for n in run.nodes if not n.startswith("(")]) for run in runs]

@@ -46,12 +46,12 @@ def command(
     as_json: bool,
     trace: Path | None,
 ) -> None:
-    """Start the nodes of MAPFILE, each on its core, and stop them together.
+    """Run the nodes of MAPFILE, each on its core.
 
-    MAPFILE is a path, or the name of an installed mapfile (manycore demo --list).
-    The run ends when all nodes have ended, after --duration, or on Ctrl-C; a second Ctrl-C does not
-    wait for slow nodes. The exit status is non-zero if a node failed.
-    To run in the background, use manycore up -d.
+    Ctrl-C stops them together. MAPFILE is a path, or the name of an installed mapfile (manycore
+    demo --list). The run ends when all nodes have ended, after --duration, or on Ctrl-C; a
+    second Ctrl-C does not wait for slow nodes. The exit status is non-zero if a node failed. To
+    run in the background, use manycore up -d.
     """
     run, _ = prepared_run(mapfile, joins, nodes)
     report = _print_json if as_json else RunPrinter(run.program_names).report

@@ -84,7 +84,10 @@ class Unreadable:
 @any_platform_option
 @json_option
 def command(platform: str | None, as_json: bool) -> None:
-    """Show this user's platforms: clusters, processes and lost messages."""
+    """Show this user's platforms and lost messages.
+
+    Clusters, processes, and messages lost per topic.
+    """
     if platform:
         states: list[PlatformState | Unreadable] = [PlatformState.of(platform)]
     else:

@@ -29,11 +29,12 @@ from rmw_manycore_py.runs.directory import RunDirectory, runs_of
 @click.option("--now", is_flag=True, help="Do not wait for slow nodes.")
 @platform_option
 def command(nodes: tuple[str, ...], now: bool, platform: str) -> None:
-    """Stop the runs of a platform, or only NODES; `manycore restart` starts those again.
+    """Stop the runs of a platform, or only NODES.
 
-    Nodes get SIGINT, SIGTERM after 5 s, and SIGKILL after another 3 s; --now sends the next signal
-    at once, like a second Ctrl-C. The exit status is that of the run. Stopping a platform without
-    running processes is not an error.
+    `manycore restart` starts single nodes again. Nodes get SIGINT, SIGTERM after 5 s, and
+    SIGKILL after another 3 s; --now sends the next signal at once, like a second Ctrl-C. The
+    exit status is that of the run. Stopping a platform without running processes is not an
+    error.
     """
     if nodes:
         for run, names in nodes_by_run(living_runs(platform), nodes):

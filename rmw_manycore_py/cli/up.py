@@ -29,7 +29,7 @@ from rmw_manycore_py.ros.domain import default_platform
 @click.option("-d", "--detach", "detached", is_flag=True, help="Run in the background.")
 @starting_options
 def command(mapfile: Path, detached: bool, joins: bool, nodes: tuple[str, ...]) -> None:
-    """Start the nodes of MAPFILE; with -d, in the background.
+    """Start the nodes of MAPFILE; -d: in the background.
 
     Without -d, same as `manycore run`. With -d, returns once all nodes are started; Ctrl-C before
     that stops them again. Continue with ps, logs, restart, attach and stop.

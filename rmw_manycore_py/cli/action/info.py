@@ -25,7 +25,7 @@ from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 @json_option
 @platform_option
 def command(action: str, platform: str, as_json: bool, show_types: bool, count: bool) -> None:
-    """Show the nodes that serve ACTION and those that use it."""
+    """Show the servers and clients of ACTION."""
     row = row_of(view.actions(view.endpoints_on(platform)), action, "action")
     if as_json:
         print_json(row)

@@ -22,6 +22,9 @@ from rmw_manycore_py.cli.common.options import (
 @json_option
 @platform_option
 def command(platform: str, as_json: bool, show_types: bool, count: bool) -> None:
-    """List the actions of a platform, including those that only have clients."""
+    """List the actions of a platform.
+
+    Actions that only have clients are listed as well.
+    """
     rows = view.actions(view.endpoints_on(platform))
     show_names(rows, as_json=as_json, types=show_types, count=count)

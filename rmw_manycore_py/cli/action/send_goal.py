@@ -37,7 +37,10 @@ STATUSES = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCE
 def command(
     action: str, type_name: str, goal: str | None, shows_feedback: bool, platform: str
 ) -> None:
-    """Send GOAL (YAML) to ACTION and print the result; Ctrl-C cancels the goal."""
+    """Send GOAL to ACTION and print the result.
+
+    GOAL is YAML. Ctrl-C cancels the goal.
+    """
     action_type = load_type(type_name, "action")
     request = message_of(action_type.Goal, parse_values(goal or DEFAULTS))
     with tool_node(platform) as node:

@@ -30,4 +30,7 @@ class _Aliases(LazyGroup):
 
 @click.group("bag", cls=_Aliases, commands_at=VERBS)
 def command() -> None:
-    """Inspect recordings; `record` and `play` are aliases of the `manycore topic` verbs."""
+    """Inspect, record and play recordings.
+
+    `record` and `play` are those of `manycore topic`.
+    """

@@ -29,9 +29,10 @@ _SERVICE_EVENT = "/_service_event"
 @click.option("-t", "--topic-name", "names_only", is_flag=True, help="Print only the topic names.")
 @json_option
 def command(path: Path, names_only: bool, as_json: bool) -> None:
-    """Show the contents of RECORDING, an MCAP file or a rosbag2 directory.
+    """Show the contents of RECORDING.
 
-    Of an unfinished or damaged file, shows what can be read, with a notice.
+    An MCAP file or a rosbag2 directory. Of an unfinished or damaged file, shows what can be
+    read, with a notice.
     """
     require_library()
     from rmw_manycore_py.recording.recording import Recording

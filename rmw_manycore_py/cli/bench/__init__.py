@@ -16,4 +16,7 @@ VERBS = {verb: f"rmw_manycore_py.cli.bench.{verb.replace('-', '_')}:command" for
 
 @click.group("bench", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """Benchmark rmw_manycore against Fast DDS and the limits of the machine."""
+    """Benchmark rmw_manycore against its peers.
+
+    Fast DDS, and the limits of the machine.
+    """

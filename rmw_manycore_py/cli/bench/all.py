@@ -19,9 +19,9 @@ QUICK_NODES = 20
 @click.command("all")
 @bench_options
 def command(quick: bool, **options: Any) -> None:
-    """Measure messages, start-up, idle nodes and memory; --quick takes about two minutes.
+    """Measure messages, start-up, idle nodes and memory.
 
-    The other benchmarks have verbs of their own.
+    --quick takes about two minutes. The other benchmarks have verbs of their own.
     """
     nodes = QUICK_NODES if quick else DEFAULT_NODES
     others = [rclpy_round_trip.QUESTION, startup.QUESTION, idle.question(nodes), memory.QUESTION]

@@ -15,5 +15,8 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.command("bridge")
 @bench_options
 def command(**options: Any) -> None:
-    """Measure round trips through the bridge, images to another host, and an idle bridge."""
+    """Measure the bridge.
+
+    Round trips, images to another host, and an idle bridge.
+    """
     answer([bridge.QUESTION], **options)

@@ -15,7 +15,9 @@ DEFAULT_NODES = 100
 
 
 @click.command("idle")
-@click.option("--nodes", default=DEFAULT_NODES, show_default=True, type=click.IntRange(1))
+@click.option(
+    "--nodes", default=DEFAULT_NODES, show_default=True, type=click.IntRange(1), help="Idle nodes."
+)
 @bench_options
 def command(nodes: int, **options: Any) -> None:
     """Measure CPU time and wake-ups of idle nodes."""

@@ -35,11 +35,12 @@ _EXAMPLES = examples(
 )
 @bench_options
 def command(model_name: str | None, sizes: tuple[int, ...], **options: Any) -> None:
-    """Measure matrix products as in the thesis on the NoC of the MPPA-256 (4.2).
+    """Measure matrix products as in the thesis, 4.2.
 
-    In DDR and SMEM, cached and not, over threads, and off-loaded to four clusters: 1,000 runs, box
-    plots (figures 4.9 to 4.12), and which of the thesis' relations hold. With --model, also
-    whether they follow from the structure of the chip or from unpublished numbers.
+    The thesis on the NoC of the MPPA-256. In DDR and SMEM, cached and not, over threads, and
+    off-loaded to four clusters: 1,000 runs, box plots (figures 4.9 to 4.12), and which of the
+    thesis' relations hold. With --model, also whether they follow from the structure of the
+    chip or from unpublished numbers.
     """
     asked = cases(sizes)
     if model_name is None:

@@ -15,5 +15,5 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.command("memory")
 @bench_options
 def command(**options: Any) -> None:
-    """Measure the memory of the platform, of a cluster and of a node."""
+    """Measure the memory of platform, cluster and node."""
     answer([memory.QUESTION], **options)

@@ -21,10 +21,11 @@ from rmw_manycore_py.cli.bench.options import bench_options
 )
 @bench_options
 def command(pclomp: Path | None, **options: Any) -> None:
-    """Measure scan matching against PCL, pclomp, small_gicp and Open3D, and over workers.
+    """Measure scan matching beside its peers.
 
-    Also measures the convergence basin, the rates of wrong poses believed and right poses refused,
-    and the whole node: beside CPU load, with large scans, with new maps, and after a kill.
+    PCL, pclomp, small_gicp and Open3D; also over workers. Also measures the convergence basin,
+    the rates of wrong poses believed and right poses refused, and the whole node: beside CPU
+    load, with large scans, with new maps, and after a kill.
     """
     own = [split.QUESTION, basin.QUESTION, trust.QUESTION]
     own += [accuracy.QUESTION, node.QUESTION]

@@ -45,11 +45,12 @@ _EXAMPLES = examples(
 def command(
     model_name: str | None, sizes: tuple[int, ...], cpus: str | None, **options: Any
 ) -> None:
-    """Measure transfers between clusters as in the thesis on the NoC of the MPPA-256 (4.1).
+    """Measure transfers between clusters (thesis, 4.1).
 
-    Tx and UC, from DDR and SMEM, on each route: latency of 1,000 runs, box plots (figures 4.2 to
-    4.7), and which of the thesis' relations hold. With --model, also whether they follow from the
-    structure of the chip or from unpublished numbers.
+    The thesis on the NoC of the MPPA-256. Tx and UC, from DDR and SMEM, on each route: latency
+    of 1,000 runs, box plots (figures 4.2 to 4.7), and which of the thesis' relations hold. With
+    --model, also whether they follow from the structure of the chip or from unpublished
+    numbers.
     """
     answer([_question(model_name, checked_sizes(sizes), cpus)], **options)
 

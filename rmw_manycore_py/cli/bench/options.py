@@ -26,7 +26,13 @@ def bench_options(body: Body) -> Body:
         click.option(
             "--quick", is_flag=True, help="Run one short round, to check that everything works."
         ),
-        click.option("--rounds", default=DEFAULT_ROUNDS, show_default=True, type=click.IntRange(1)),
+        click.option(
+            "--rounds",
+            default=DEFAULT_ROUNDS,
+            show_default=True,
+            type=click.IntRange(1),
+            help="Times to measure everything.",
+        ),
         click.option(
             "--only",
             multiple=True,

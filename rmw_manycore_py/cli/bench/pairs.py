@@ -24,14 +24,23 @@ from rmw_manycore_py.cli.common.printing import echo, print_json
     ),
 )
 @click.argument("other", type=click.Path(file_okay=False, path_type=Path))
-@click.option("--pairs", default=30, show_default=True, type=click.IntRange(MIN_PAIRS))
-@click.option("--size", default="64 B", show_default=True, type=click.Choice(list(PAYLOADS)))
+@click.option(
+    "--pairs", default=30, show_default=True, type=click.IntRange(MIN_PAIRS), help="Pairs of runs."
+)
+@click.option(
+    "--size",
+    default="64 B",
+    show_default=True,
+    type=click.Choice(list(PAYLOADS)),
+    help="Size of a message.",
+)
 @click.option("--between", is_flag=True, help="Between two clusters instead of inside of one.")
 @json_option
 def command(other: Path, pairs: int, size: str, between: bool, as_json: bool) -> None:
-    """Compare round trips with those of another build, in alternating pairs of runs.
+    """Compare round trips with those of another build.
 
-    OTHER is the directory with the librmw_manycore.so of the other build.
+    In alternating pairs of runs. OTHER is the directory with the librmw_manycore.so of the
+    other build.
     """
     with Console(stderr=True).status("bench") as status:
         found = compare(other, pairs, usable_cpus(), status.update, size=size, between=between)

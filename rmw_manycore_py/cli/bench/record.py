@@ -15,5 +15,8 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.command("record")
 @bench_options
 def command(**options: Any) -> None:
-    """Measure the losses of a recorder at 100 MB/s, and the timing error of a player."""
+    """Measure losses of a recorder, timing of a player.
+
+    The recorder at 100 MB/s.
+    """
     answer([record.QUESTION], **options)

@@ -61,11 +61,12 @@ def command(
     output: Path | None,
     **options: Any,
 ) -> None:
-    """Run the 24 nodes of the Autoware reference system, one process each.
+    """Run the nodes of the Autoware reference system.
 
-    Measures latency of the hot path, drops, jitter, CPU, memory, start-up and throughput, also
-    beside one busy CPU and with good and bad mappings. With --output, also writes the output of the
-    last node in the format that the report scripts of the reference system read.
+    24 nodes, one process each. Measures latency of the hot path, drops, jitter, CPU, memory,
+    start-up and throughput, also beside one busy CPU and with good and bad mappings. With
+    --output, also writes the output of the last node in the format that the report scripts of
+    the reference system read.
     """
     wanted = Wanted(nodes, message, crunch_ms, duration_s)
     answer([reference_question(wanted, output)], output=output, **options)

@@ -24,5 +24,8 @@ QUESTIONS = {
 @click.argument("questions", nargs=-1, type=click.Choice(list(QUESTIONS)))
 @bench_options
 def command(questions: tuple[str, ...], **options: Any) -> None:
-    """Run native programs over rmw_publish, rmw_wait and rmw_take; default: all QUESTIONS."""
+    """Measure rmw_publish, rmw_wait and rmw_take.
+
+    By native programs; default: all QUESTIONS.
+    """
     answer([QUESTIONS[name] for name in questions or QUESTIONS], **options)

@@ -23,11 +23,11 @@ from rmw_manycore_py.cli.common.options import examples
 )
 @bench_options
 def command(**options: Any) -> None:
-    """Drive ROS-lite's pipeline and measure it as ROS-lite does (Fig. 13 to 16, Table I).
+    """Measure ROS-lite's pipeline as ROS-lite does.
 
-    1,000 scans before and after parallelization, the localizer split over 1 to 5 clusters of
-    derivatives and 2 or 3 of radius search, what each node sends by each transfer, and the memory
-    of pure_pursuit's cluster; which of the paper's relations hold. Takes half an hour, a quarter of
-    an hour with --rounds 1.
+    Its figures 13 to 16 and table I. 1,000 scans before and after parallelization, the localizer
+    split over 1 to 5 clusters of derivatives and 2 or 3 of radius search, what each node sends by
+    each transfer, and the memory of pure_pursuit's cluster; which of the paper's relations hold.
+    Takes half an hour, a quarter of an hour with --rounds 1.
     """
     answer([QUESTION], **options)

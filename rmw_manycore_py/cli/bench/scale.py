@@ -23,12 +23,13 @@ _EXAMPLES = examples(
 @click.command("scale", epilog=_EXAMPLES)
 @bench_options
 def command(**options: Any) -> None:
-    """Measure what many threads, endpoints and nodes cost each other, beside Fast DDS.
+    """Measure many threads, endpoints and nodes.
 
-    Curves over the threads of a process that wait by block, adaptive and spin; over composed rclpy
-    nodes with each executor; over the endpoints of a topic and the messages that a publisher keeps;
-    over nodes that follow /clock at 1 kHz; over clients of a service and of an action; and over
-    nodes of a platform: start, joins, rest, publishing, reading the graph, and kills.
+    What they cost each other, beside Fast DDS. Curves over the threads of a process that wait
+    by block, adaptive and spin; over composed rclpy nodes with each executor; over the
+    endpoints of a topic and the messages that a publisher keeps; over nodes that follow /clock
+    at 1 kHz; over clients of a service and of an action; and over nodes of a platform: start,
+    joins, rest, publishing, reading the graph, and kills.
 
     --quick measures the first half of each curve. --only selects a curve by its first question.
     """

@@ -15,5 +15,8 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.command("startup")
 @bench_options
 def command(**options: Any) -> None:
-    """Measure the time from the start of an rclpy process to its first message."""
+    """Measure the time to the first message.
+
+    From the start of an rclpy process.
+    """
     answer([startup.QUESTION], **options)

@@ -15,5 +15,8 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.command("trace")
 @bench_options
 def command(**options: Any) -> None:
-    """Measure the overhead of tracing, disabled and enabled, and the time to save a trace."""
+    """Measure the overhead of tracing.
+
+    Disabled and enabled, and the time to save a trace.
+    """
     answer([trace.QUESTION], **options)

@@ -15,5 +15,8 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.command("view")
 @bench_options
 def command(**options: Any) -> None:
-    """Measure the cost of `manycore view` with 500 nodes and 1,000 active topics."""
+    """Measure the cost of `manycore view`.
+
+    With 500 nodes and 1,000 active topics.
+    """
     answer([view.QUESTION], **options)

@@ -38,8 +38,9 @@ from rmw_manycore_py.cli.common.options import examples
 )
 @bench_options
 def command(course: Path, namespace: str | None, **options: Any) -> None:
-    """Drive the wheelchair: off-loaded, on plain Fast DDS, and with a fault in each process.
+    """Drive the wheelchair, and measure it.
 
-    A round consists of 15 drives over the whole course; each takes two minutes on the default one.
+    Off-loaded, on plain Fast DDS, and with a fault in each process. A round consists of 15
+    drives over the whole course; each takes two minutes on the default one.
     """
     answer([whill.drive_question(course, namespace), whill.fault_question(course)], **options)

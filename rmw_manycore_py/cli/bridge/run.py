@@ -28,9 +28,10 @@ from rmw_manycore_py.ros.domain import MAX_DOMAIN, ros_domain
 )
 @platform_option
 def command(config: Path, inside: int, platform: str) -> None:
-    """Run the bridge described by CONFIG, in the YAML schema of domain_bridge.
+    """Run the bridge described by CONFIG.
 
-    One side of each entry has to be the platform's domain; the other side is a real DDS domain.
+    In the YAML schema of domain_bridge. One side of each entry has to be the platform's domain;
+    the other side is a real DDS domain.
     """
     plan = Plan(platform, load_bridge_file(config, inside, _warn))
     sys.exit(run_bridge(plan, RunPrinter().report))

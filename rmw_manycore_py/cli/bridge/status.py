@@ -21,7 +21,10 @@ _ARROWS = {"inward": "<-", "outward": "->"}
 @platform_option
 @json_option
 def command(platform: str, as_json: bool) -> None:
-    """Show bridged topics and services: traffic, and what was held back and why."""
+    """Show bridged topics and services.
+
+    Traffic, and what was held back and why.
+    """
     with open_platform(platform):
         rows = status(platform)
     if as_json:

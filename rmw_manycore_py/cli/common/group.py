@@ -6,6 +6,7 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import sys
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -18,12 +19,15 @@ from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.errors import EXIT_INTERRUPTED, reported
 
+MAX_SUMMARY = 50  # characters of a command's first sentence
+
 
 class LazyGroup(click.Group):
     """Maps each command to where it is defined: "package.module:attribute".
 
     Commands whose module is not installed are hidden. For commands in `until_ctrl_c`, Ctrl-C is the
-    normal way to end, also during start-up; for the others it is a failure.
+    normal way to end, also during start-up; for the others it is a failure. `sections` are the
+    headings of the help, with their commands.
     """
 
     def __init__(
@@ -31,15 +35,31 @@ class LazyGroup(click.Group):
         *args: Any,
         commands_at: dict[str, str],
         until_ctrl_c: tuple[str, ...] = (),
+        sections: Mapping[str, Sequence[str]] | None = None,
         **kwargs: Any,
     ) -> None:
         super().__init__(*args, **kwargs)
         self._commands_at = commands_at
         self._until_ctrl_c = until_ctrl_c
+        self._sections = sections or {"Commands": tuple(commands_at)}
 
     @override
     def list_commands(self, ctx: click.Context) -> list[str]:
         return [name for name, place in self._commands_at.items() if _is_installed(place)]
+
+    @override
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        installed = self.list_commands(ctx)
+        width = max(map(len, installed), default=0)
+        for heading, names in self._sections.items():
+            rows = [
+                (name.ljust(width), command.get_short_help_str(MAX_SUMMARY))
+                for name in names
+                if name in installed and (command := self.get_command(ctx, name)) is not None
+            ]
+            if rows:
+                with formatter.section(heading):
+                    formatter.write_dl(rows)
 
     @override
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:

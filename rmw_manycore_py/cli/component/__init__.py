@@ -15,4 +15,7 @@ VERBS = {
 
 @click.group("component", cls=LazyGroup, commands_at=VERBS, until_ctrl_c=("standalone",))
 def command() -> None:
-    """List, load and unload components of component containers."""
+    """List, load and unload components.
+
+    Components run in component containers.
+    """

@@ -30,7 +30,10 @@ from rmw_manycore_py.cli.component.containers import (
 @json_option
 @platform_option
 def command(container: str | None, containers_only: bool, as_json: bool, platform: str) -> None:
-    """List containers and their components, or only the components of CONTAINER."""
+    """List containers and their components.
+
+    Or only the components of CONTAINER.
+    """
     names = [existing_container(platform, container)] if container else containers_on(platform)
     found: dict[str, list[tuple[int, str]]] = {name: [] for name in names}
     if names and not containers_only:

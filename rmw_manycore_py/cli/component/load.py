@@ -31,7 +31,7 @@ from rmw_manycore_py.cli.component.wanted_options import wanted_options
 @discovery_options
 @platform_option
 def command(container: str, wanted: Wanted, quiet: bool, platform: str) -> None:
-    """Load the component PLUGIN of PACKAGE into CONTAINER."""
+    """Load PLUGIN of PACKAGE into CONTAINER."""
     name = existing_container(platform, container)
     with tool_node(platform) as tool:
         unique_id, node = Container(tool, name).load(wanted)

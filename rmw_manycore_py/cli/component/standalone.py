@@ -39,7 +39,10 @@ START_TIMEOUT_S, END_TIMEOUT_S = 30.0, 5.0
 @discovery_options
 @platform_option
 def command(wanted: Wanted, name: str | None, platform: str) -> None:
-    """Run the component PLUGIN of PACKAGE in a container of its own, until Ctrl-C."""
+    """Run PLUGIN of PACKAGE in its own container.
+
+    Until Ctrl-C.
+    """
     program = find_executable(PACKAGE, EXECUTABLE)
     if program is None:
         raise ManycoreError(

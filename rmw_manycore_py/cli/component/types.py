@@ -18,7 +18,10 @@ from rmw_manycore_py.ros.ament import package_prefix
 @click.argument("package", required=False, shell_complete=complete_component_packages)
 @json_option
 def command(package: str | None, as_json: bool) -> None:
-    """List the component types registered by all packages, or only by PACKAGE."""
+    """List the registered component types.
+
+    Of all packages, or only of PACKAGE.
+    """
     if package and package_prefix(package) is None:
         meant = did_you_mean(package, packages_with_components())
         raise ManycoreError(f"Unable to find package '{package}'{meant}")

@@ -57,10 +57,11 @@ def command(
     strict: bool,
     mapfile: str | None,
 ) -> None:
-    """Check this machine and installation, and say how to fix what is wrong.
+    """Check this machine and installation.
 
-    The exit status is 0 unless a check fails; warnings do not count. A report contains no messages,
-    no secrets, and neither user nor host name; sections that fail to collect say why.
+    Say how to fix what is wrong. The exit status is 0 unless a check fails; warnings do not
+    count. A report contains no messages, no secrets, and neither user nor host name; sections
+    that fail to collect say why.
     """
     if target is not None:
         write_report(target, mapfile, lambda: _rows(_findings()), packages=not lean)

@@ -15,4 +15,7 @@ VERBS = {
 
 @click.group("interface", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """List, show and build message, service and action types."""
+    """List, show and build types of messages.
+
+    Messages, services and actions.
+    """

@@ -35,9 +35,10 @@ from rmw_manycore_py.ros import ament
 )
 @click.option("--mapfile", metavar="MAP", help="Build only types that the nodes of MAP use.")
 def command(paths: tuple[Path, ...], only: tuple[str, ...], mapfile: str | None) -> None:
-    """Build the interface packages found in each PATH, for this user's Python programs.
+    """Build the interface packages found in each PATH.
 
-    PATH is a ROS 2 package, a directory pkg/{msg,srv,action}, or a directory that contains such.
+    For this user's Python programs. PATH is a ROS 2 package, a directory pkg/{msg,srv,action},
+    or a directory that contains such.
     """
     sources = find_sources(paths)
     wanted = {*only, *(_used_by(mapfile, sources) if mapfile else ())}

@@ -21,7 +21,10 @@ from rmw_manycore_py.ros.ament import interfaces, packages_with_interfaces
 )
 @json_option
 def command(kinds: tuple[str, ...], built: bool, as_json: bool) -> None:
-    """List the installed and locally built types, by default of all three kinds."""
+    """List the installed and locally built types.
+
+    By default of all three kinds.
+    """
     if built:
         print_built(kinds, as_json)
         return

@@ -22,7 +22,10 @@ _PARTS = {"msg": None, "srv": "Request", "action": "Goal"}
 @click.argument("type_name", metavar="TYPE", shell_complete=complete_types)
 @click.option("--no-quotes", is_flag=True, help="Print the prototype without quotes.")
 def command(type_name: str, no_quotes: bool) -> None:
-    """Print a prototype of TYPE to edit: of a service its request, of an action its goal."""
+    """Print a prototype of TYPE to edit.
+
+    Of a service its request, of an action its goal.
+    """
     text = to_yaml(_prototype(type_name), ALL)
     echo(text if no_quotes else f'"{text}"')
 

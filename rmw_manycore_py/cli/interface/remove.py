@@ -13,7 +13,7 @@ from rmw_manycore_py.interfaces.build import remove
 @click.command("remove", epilog=examples("manycore interface remove nav2_msgs"))
 @click.argument("packages", metavar="PACKAGE...", nargs=-1, required=True)
 def command(packages: tuple[str, ...]) -> None:
-    """Remove packages made by `manycore interface build`."""
+    """Remove packages built by `interface build`."""
     remove(packages, lambda: echo("waiting for a build to finish", err=True))
     for package in packages:
         echo(f"{package}: removed")

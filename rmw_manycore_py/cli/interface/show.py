@@ -25,7 +25,10 @@ from rmw_manycore_py.cli.interface.text import definition
 @click.option("--all-comments", is_flag=True, help="Also show the comments of nested types.")
 @click.option("--no-comments", is_flag=True, help="Omit comments and empty lines.")
 def command(type_name: str, all_comments: bool, no_comments: bool) -> None:
-    """Show the definition of TYPE and its nested types; - reads TYPE from standard input."""
+    """Show the definition of TYPE and its nested types.
+
+    - reads TYPE from standard input.
+    """
     exclude(("--all-comments", all_comments), ("--no-comments", no_comments))
     if type_name == "-":
         type_name = sys.stdin.readline().strip()

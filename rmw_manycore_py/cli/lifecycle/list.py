@@ -30,7 +30,7 @@ from rmw_manycore_py.cli.lifecycle.services import (
 @named_node_options
 @platform_option
 def command(node: str, every: bool, platform: str, as_json: bool) -> None:
-    """List the transitions available to NODE in its current state."""
+    """List the transitions that NODE can make now."""
     name = existing_lifecycle_node(platform, node)
     with tool_node(platform) as tool:
         transitions = Lifecycle(tool, name).transitions(every=every)

@@ -18,7 +18,10 @@ from rmw_manycore_py.mapfile import load_mapfile, resolve
 @mapfile_argument()
 @json_option
 def command(mapfile: Path, as_json: bool) -> None:
-    """Check MAPFILE and everything it refers to, without starting anything."""
+    """Check MAPFILE and everything it refers to.
+
+    Nothing is started.
+    """
     try:
         placement = resolve(load_mapfile(mapfile), to_start=False)
     except MapfileError as error:

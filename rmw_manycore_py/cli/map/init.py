@@ -24,7 +24,13 @@ from rmw_manycore_py.topology import PROFILES
     ),
 )
 @click.argument("sources", nargs=-1, required=True)
-@click.option("--profile", type=click.Choice(PROFILES), default="host", show_default=True)
+@click.option(
+    "--profile",
+    type=click.Choice(PROFILES),
+    default="host",
+    show_default=True,
+    help="Shape of the platform: this machine, or a chip.",
+)
 @click.option(
     "--plan",
     is_flag=True,
@@ -37,11 +43,12 @@ from rmw_manycore_py.topology import PROFILES
     help="File to write; must not exist.  [default: standard output]",
 )
 def command(sources: tuple[str, ...], profile: str, plan: bool, output: Path | None) -> None:
-    """Write a mapfile template for the nodes in SOURCES; only the clusters are left to choose.
+    """Write a mapfile template for the nodes in SOURCES.
 
-    SOURCES are Python files, directories of them, and at most one launch file with values for its
-    arguments as NAME:=VALUE. To plan a chip for a launch file, its packages need not be installed:
-    --plan spreads all of its nodes over the clusters, and 'map check' and 'map show' take them.
+    Only the clusters are left to choose. SOURCES are Python files, directories of them, and at
+    most one launch file with values for its arguments as NAME:=VALUE. To plan a chip for a
+    launch file, its packages need not be installed: --plan spreads all of its nodes over the
+    clusters, and 'map check' and 'map show' take them.
     """
     arguments = dict(source.split(":=", 1) for source in sources if ":=" in source)
     files = [Path(source) for source in sources if ":=" not in source]

@@ -28,7 +28,10 @@ from rmw_manycore_py.topology import as_host_cpu, host_cpu_text
 @mapfile_argument()
 @json_option
 def command(mapfile: Path, as_json: bool) -> None:
-    """Show the placement of MAPFILE: nodes, topic table, memory of the clusters."""
+    """Show the placement of MAPFILE.
+
+    Nodes, topic table, memory of the clusters.
+    """
     placement = resolve(load_mapfile(mapfile), to_start=False)
     if as_json:
         print_json(as_data(placement))

@@ -15,4 +15,7 @@ VERBS = {
 
 @click.group("ndt", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """Tools for NDT scan matching: recordings, maps and off-loading."""
+    """Prepare and test NDT scan matching.
+
+    Recordings, maps and off-loading.
+    """

@@ -74,7 +74,7 @@ def command(
     tile_m: float | None,
     suffix: str,
 ) -> None:
-    """Build a map from the scans of RECORDING and their poses."""
+    """Build a map from the scans and poses of RECORDING."""
     if not output.parent.is_dir():
         raise click.UsageError(f"--output '{output}': there is no directory '{output.parent}'")
     drive = open_recording(recording, poses_path, topic, pose_topic)

@@ -23,10 +23,11 @@ from rmw_manycore_py.cli.common.printing import echo
 @click.argument("directory", type=click.Path(file_okay=False, path_type=Path))
 @click.option("--map-loader", is_flag=True, help="Also replace Autoware's pointcloud_map_loader.")
 def command(directory: Path, map_loader: bool) -> None:
-    """Replace Autoware's scan matcher with this one in shells that source DIRECTORY/setup.sh.
+    """Replace Autoware's scan matcher in a shell.
 
-    DIRECTORY becomes an install prefix with a package of Autoware's name, whose executable starts
-    the node of rmw_manycore. Launch and parameter files are taken from the sourced Autoware.
+    Shells that source DIRECTORY/setup.sh start this one instead. DIRECTORY becomes an install
+    prefix with a package of Autoware's name, whose executable starts the node of rmw_manycore.
+    Launch and parameter files are taken from the sourced Autoware.
     """
     if not directory.parent.is_dir():
         raise click.UsageError(f"'{directory}': there is no directory '{directory.parent}'")

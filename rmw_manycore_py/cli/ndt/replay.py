@@ -140,10 +140,11 @@ def command(
     pid: int | None,
     **files: Path | None,
 ) -> None:
-    """Play RECORDING to a scan matcher, as the stack of a laptop outside the platform does.
+    """Play RECORDING to a scan matcher.
 
-    Publishes pointcloud_map, ekf_pose_with_covariance and points_raw, subscribes to ndt_pose, and
-    reports error, latency and losses. The exit status is 1 if a scan was lost, late or diverged.
+    As the stack of a laptop outside the platform does. Publishes pointcloud_map,
+    ekf_pose_with_covariance and points_raw, subscribes to ndt_pose, and reports error, latency
+    and losses. The exit status is 1 if a scan was lost, late or diverged.
     """
     outputs = ReplayFiles(**files)
     outputs.check()

@@ -122,9 +122,10 @@ def command(
     beams: int,
     **lidar: float,
 ) -> None:
-    """Generate a street and a LiDAR drive along it; write drive.npz and map.npz to DIRECTORY.
+    """Generate a street and a LiDAR drive along it.
 
-    The map comes from a separate drive without traffic, with different positions and noise.
+    Writes drive.npz and map.npz to DIRECTORY. The map comes from a separate drive without
+    traffic, with different positions and noise.
     """
     with writing(directory):
         directory.mkdir(parents=True, exist_ok=True)

@@ -21,7 +21,10 @@ from rmw_manycore_py.errors import ManycoreError
 @timeout_option
 @platform_option
 def command(node: str, parameter: str, timeout_s: float, platform: str) -> None:
-    """Delete PARAMETER of NODE; the node has to allow undeclared parameters."""
+    """Delete PARAMETER of NODE.
+
+    The node has to allow undeclared parameters.
+    """
     name = waited_for(platform, node, timeout_s)
     with tool_node(platform) as tool:
         ((_, result),) = Parameters(tool, name).set([parameter_of(parameter, None)])

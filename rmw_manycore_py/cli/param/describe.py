@@ -32,7 +32,10 @@ from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 def command(
     node: str, parameters: tuple[str, ...], timeout_s: float, platform: str, as_json: bool
 ) -> None:
-    """Show type, description and constraints of PARAMETERS of NODE."""
+    """Describe PARAMETERS of NODE.
+
+    Type, description and constraints.
+    """
     name = waited_for(platform, node, timeout_s)
     with tool_node(platform) as tool:
         descriptors = Parameters(tool, name).descriptors(parameters)

@@ -49,7 +49,10 @@ def command(
     platform: str,
     as_json: bool,
 ) -> None:
-    """Call SERVICE with VALUES in YAML; wait for a server if there is none."""
+    """Call SERVICE with VALUES in YAML.
+
+    Waits for a server if there is none.
+    """
     service_type = load_type(type_name, "srv")
     request = message_of(service_type.Request, parse_values(values or DEFAULTS))
     with tool_node(platform) as node:

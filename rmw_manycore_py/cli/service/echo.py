@@ -40,9 +40,10 @@ EVENTS = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_RECEIVE
 def command(
     service: str, type_name: str | None, shown: Shown, style: str | None, platform: str
 ) -> None:
-    """Print requests and responses of SERVICE if service introspection is enabled.
+    """Print requests and responses of SERVICE.
 
-    Servers and clients enable it with configure_introspection().
+    Its nodes have to enable service introspection. Servers and clients enable it with
+    configure_introspection().
     """
     service = expand(service, "/")
     service_type = load_type(type_name or _type_of(service, platform), "srv")

@@ -26,6 +26,9 @@ from rmw_manycore_py.cli.common.options import (
 @json_option
 @platform_option
 def command(platform: str, as_json: bool, show_types: bool, count: bool, hidden: bool) -> None:
-    """List the services of a platform, including those that only have clients."""
+    """List the services of a platform.
+
+    Services that only have clients are listed as well.
+    """
     rows = view.services(view.endpoints_on(platform), hidden=hidden)
     show_names(rows, as_json=as_json, types=show_types, count=count)

@@ -81,7 +81,7 @@ def command(
     topic_order: str,
     pattern: str,
 ) -> None:
-    """Show nodes, topics and memory of a platform until q or Ctrl-C.
+    """Show nodes, topics and memory, until q or Ctrl-C.
 
     Keys: n and t change the order of nodes and topics, r reverses it, / filters, q quits.
     """

@@ -22,9 +22,9 @@ def command(
     as_json: bool,
     sim_time: bool,
 ) -> None:
-    """Print the bandwidth of TOPIC once per second, without deserializing messages.
+    """Print the bandwidth of TOPIC once per second.
 
-    Waits until TOPIC exists; with TYPE, subscribes at once.
+    Messages are not deserialized. Waits until TOPIC exists; with TYPE, subscribes at once.
     """
     meter = BandwidthMeter(window)
 

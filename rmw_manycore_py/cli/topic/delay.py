@@ -25,9 +25,10 @@ def command(
     as_json: bool,
     sim_time: bool,
 ) -> None:
-    """Print the age of messages on TOPIC, by their header stamp, once per second.
+    """Print the age of messages on TOPIC.
 
-    Waits until TOPIC exists; with TYPE, subscribes at once.
+    By their header stamp, once per second. Waits until TOPIC exists; with TYPE, subscribes at
+    once.
     """
     meter = DelayMeter(window)
     printed: Delay | None = None

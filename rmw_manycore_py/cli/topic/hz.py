@@ -31,9 +31,9 @@ def command(
     as_json: bool,
     sim_time: bool,
 ) -> None:
-    """Print the rate of TOPIC once per second while messages arrive.
+    """Print the rate of TOPIC once per second.
 
-    Messages are deserialized only for --filter.
+    Only while messages arrive. Messages are deserialized only for --filter.
 
     Waits until TOPIC exists; with TYPE, subscribes at once.
     """

@@ -145,11 +145,11 @@ def command(
     as_json: bool,
     platform: str,
 ) -> None:
-    """Publish the messages of RECORDING with their recorded timing.
+    """Publish the messages of RECORDING as recorded.
 
-    RECORDING is an MCAP file, or a rosbag2 directory of such files. Topics are published with their
-    recorded QoS. Keys on a terminal: space pauses, right plays the next message while paused, up
-    and down change the rate.
+    With their recorded timing. RECORDING is an MCAP file, or a rosbag2 directory of such files.
+    Topics are published with their recorded QoS. Keys on a terminal: space pauses, right plays
+    the next message while paused, up and down change the rate.
     """
     require_library()
     if outside:

@@ -114,9 +114,10 @@ def command(
     sim_time: bool,
     platform: str,
 ) -> None:
-    """Publish messages of TYPE on TOPIC, with VALUES in YAML and defaults elsewhere.
+    """Publish messages of TYPE on TOPIC.
 
-    `auto` for a header and `now` for a time stand for the time of publishing.
+    VALUES are YAML; other fields have their defaults. `auto` for a header and `now` for a time
+    stand for the time of publishing.
     """
     exclude(("--yaml-file", file is not None), ("VALUES", values is not None))
     exclude(("--once", once), ("--times", times > 0))

@@ -71,7 +71,9 @@ def _qos_options(preset: str, unasked: str) -> Callable[[_Command], _Command]:
     """Return a decorator; `unasked` describes policies that are not given."""
 
     def policy(name: str) -> Callable[[_Command], _Command]:
-        return click.option(f"--qos-{name}", name, type=click.Choice(POLICIES[name]))
+        return click.option(
+            f"--qos-{name}", name, type=click.Choice(POLICIES[name]), help=f"QoS: {name}."
+        )
 
     def decorate(function: _Command) -> _Command:
         @click.option(
@@ -85,13 +87,16 @@ def _qos_options(preset: str, unasked: str) -> Callable[[_Command], _Command]:
         @policy("reliability")
         @policy("durability")
         @policy("history")
-        @click.option("--qos-depth", "depth", metavar="N", type=click.IntRange(1))
+        @click.option(
+            "--qos-depth", "depth", metavar="N", type=click.IntRange(1), help="QoS: messages kept."
+        )
         @policy("liveliness")
         @click.option(
             "--qos-liveliness-lease-duration-seconds",
             "lease_s",
             metavar="S",
             type=click.FloatRange(min=0, min_open=True),
+            help="QoS: time within which a publisher shows that it is alive.",
         )
         @functools.wraps(function)
         def with_qos(**options: Any) -> None:

@@ -112,11 +112,12 @@ def command(
     as_json: bool,
     platform: str,
 ) -> None:
-    """Record TOPICS in MCAP, for Foxglove, PlotJuggler, `ros2 bag` and `manycore topic play`.
+    """Record TOPICS in an MCAP file.
 
-    TOPICS are names or patterns: * matches within one part of a name, ** any number of parts.
-    Topics that appear later are recorded as well. Stop with Ctrl-C; after a kill, the file is
-    still readable. Lost messages are counted.
+    Foxglove, PlotJuggler, `ros2 bag` and `manycore topic play` read it. TOPICS are names or
+    patterns: * matches within one part of a name, ** any number of parts. Topics that appear
+    later are recorded as well. Stop with Ctrl-C; after a kill, the file is still readable. Lost
+    messages are counted.
     """
     if not (topics or everything or regex or types):
         raise nothing_chosen()

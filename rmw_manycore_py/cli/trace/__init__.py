@@ -23,4 +23,7 @@ VERBS = {
     ),
 )
 def command() -> None:
-    """Trace nodes, receive threads and messages, and analyse latency."""
+    """Trace messages and analyse their latency.
+
+    Events of nodes, receive threads and messages.
+    """

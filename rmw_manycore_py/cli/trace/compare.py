@@ -22,9 +22,10 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 @click.argument("after", type=_FILE)
 @json_option
 def command(before: Path, after: Path, as_json: bool) -> None:
-    """Show what changed between the traces BEFORE and AFTER: medians in microseconds.
+    """Compare the traces BEFORE and AFTER.
 
-    A part has changed if the 95 % confidence intervals of its medians do not overlap.
+    Medians in microseconds. A part has changed if the 95 % confidence intervals of its medians
+    do not overlap.
     """
     changes = compare(evaluated(load(before)), evaluated(load(after)))
     if not changes:

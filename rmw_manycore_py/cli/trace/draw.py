@@ -23,10 +23,19 @@ from rmw_manycore_py.trace.files import load
     ),
 )
 @click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
-@click.option("-o", "--output", required=True, type=OutputFile(".png", ".svg", ".pdf"))
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=OutputFile(".png", ".svg", ".pdf"),
+    help="File to write.",
+)
 @click.option("--chain", help="Topics of the chain, separated by spaces; default: the longest.")
 def command(file: Path, output: Path, chain: str | None) -> None:
-    """Draw the path of one message through a chain: the one with the median latency."""
+    """Draw the path of one message through a chain.
+
+    The message with the median latency.
+    """
     trace = load(file)
     draw(trace, _median_passage(Messages(trace), chain), output)
 

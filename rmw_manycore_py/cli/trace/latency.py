@@ -48,9 +48,10 @@ def command(
     as_json: bool,
     platform: str,
 ) -> None:
-    """Show the latency of messages through chains of nodes, hop by hop, in microseconds.
+    """Show latency through chains of nodes, hop by hop.
 
-    A chain continues where a node publishes while it handles a message it has taken.
+    In microseconds. A chain continues where a node publishes while it handles a message it has
+    taken.
     """
     if live == (file is not None):
         raise click.UsageError("expected either FILE or --live")

@@ -28,7 +28,10 @@ from rmw_manycore_py.trace.files.saving import save_recorded
 )
 @platform_option
 def command(output: Path, platform: str) -> None:
-    """Write the recorded events to a file and free their buffers."""
+    """Write the recorded events to a file.
+
+    Their buffers are freed.
+    """
     require_platform(platform)
     trace = save_recorded(platform, output)
     if trace.lost:

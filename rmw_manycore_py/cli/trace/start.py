@@ -35,7 +35,10 @@ from rmw_manycore_py.native_errors import translate_native_errors
 def command(
     clusters: tuple[int, ...], nodes: tuple[str, ...], events: int, discard: bool, platform: str
 ) -> None:
-    """Start tracing all processes of a platform, including those that join later."""
+    """Start tracing all processes of a platform.
+
+    Processes that join later are traced as well.
+    """
     require_platform(platform)
     with translate_native_errors():
         _transport.start_trace(

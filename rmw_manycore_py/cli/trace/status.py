@@ -18,7 +18,10 @@ from rmw_manycore_py.native_errors import translate_native_errors
 @platform_option
 @json_option
 def command(platform: str, as_json: bool) -> None:
-    """Show whether a platform is traced, and how many events wait to be saved."""
+    """Show whether a platform is traced.
+
+    And how many events wait to be saved.
+    """
     require_platform(platform)
     with translate_native_errors():
         state = _transport.trace_state(platform)

@@ -14,7 +14,10 @@ from rmw_manycore_py.native_errors import translate_native_errors
 @click.command("stop", epilog=examples("manycore trace stop"))
 @platform_option
 def command(platform: str) -> None:
-    """Stop tracing; recorded events can be saved until the platform ends."""
+    """Stop tracing.
+
+    Recorded events can be saved until the platform ends.
+    """
     require_platform(platform)
     with translate_native_errors():
         _transport.stop_trace(platform)

@@ -52,9 +52,10 @@ DEFAULT_PORT = 8642
 def command(
     platform: str, port: int, opens: bool, once: bool, output: Path | None, period_s: float
 ) -> None:
-    """Show the chip in the browser: clusters, cores, nodes, and the topics between them.
+    """Show the chip in the browser.
 
-    The platform may start and end meanwhile. Viewing does not join it and wakes no node.
+    Clusters, cores, nodes, and the topics between them. The platform may start and end
+    meanwhile. Viewing does not join it and wakes no node.
     """
     if once != (output is not None):
         raise click.UsageError("--once and -o FILE require each other")

@@ -12,4 +12,7 @@ VERBS = {verb: f"rmw_manycore_py.cli.whill.{verb}:command" for verb in ("course"
 
 @click.group("whill", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """Drive a wheelchair with off-loaded localization and control (ROS-lite2 case study)."""
+    """Drive the wheelchair of ROS-lite2.
+
+    A case study with off-loaded localization and control.
+    """

@@ -96,9 +96,10 @@ def command(
     trajectory_path: Path | None,
     **shape: float,
 ) -> None:
-    """Write a course to DIRECTORY: map, trajectory, surroundings, and a mapfile that uses them.
+    """Write the files of a course to DIRECTORY.
 
-    The streets are those of `manycore ndt simulate`, with a left and a right turn.
+    Map, trajectory, surroundings, and a mapfile that uses them. The streets are those of
+    `manycore ndt simulate`, with a left and a right turn.
     """
     if (map_path is None) != (trajectory_path is None):
         raise click.UsageError("--map and --trajectory require each other")

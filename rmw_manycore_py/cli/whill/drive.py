@@ -88,10 +88,10 @@ def command(
     picture: Path | None,
     as_json: bool,
 ) -> None:
-    """Simulate the laptop of the case study on Fast DDS: wheelchair, sensors and driver.
+    """Simulate the laptop of the case study on Fast DDS.
 
-    The wheelchair obeys /whill/controller/cmd_vel only. The exit status is 0 if it reached the end
-    of the course, or drove for --duration seconds.
+    Wheelchair, sensors and driver. The wheelchair obeys /whill/controller/cmd_vel only. The
+    exit status is 0 if it reached the end of the course, or drove for --duration seconds.
     """
     if runs and plain:
         raise click.UsageError("--run and --plain are mutually exclusive")

@@ -13,7 +13,8 @@ import click
 import pytest
 from click.testing import CliRunner, Result
 
-from rmw_manycore_py.cli.main import cli
+from rmw_manycore_py.cli.common.group import MAX_SUMMARY
+from rmw_manycore_py.cli.main import SECTIONS, VERBS, cli
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
 
 pytestmark = pytest.mark.unit
@@ -36,6 +37,31 @@ def commands(group: click.Group = cli, *path: str) -> Iterator[tuple[str, ...]]:
             yield from commands(command, *path, name)
         else:
             yield (*path, name)
+
+
+def all_commands(group: click.Group = cli) -> Iterator[tuple[str, click.Command]]:
+    context = click.Context(group)
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
+        assert command is not None
+        yield name, command
+        if isinstance(command, click.Group):
+            yield from all_commands(command)
+
+
+def test_every_summary_fits_into_its_line() -> None:
+    summaries = {command.get_short_help_str(1000) for _, command in all_commands()}
+    assert [text for text in summaries if len(text) > MAX_SUMMARY] == []
+
+
+def test_every_option_has_help() -> None:
+    found = {(name, option) for name, command in all_commands() for option in command.params}
+    options = [(name, one) for name, one in found if isinstance(one, click.Option)]
+    assert [(name, one.opts) for name, one in options if not one.help] == []
+
+
+def test_every_command_is_in_a_section_of_the_help() -> None:
+    assert sorted(name for names in SECTIONS.values() for name in names) == sorted(VERBS)
 
 
 @pytest.fixture
