@@ -19,7 +19,7 @@ from support import (
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.mapfile import load_mapfile, resolve
-from rmw_manycore_py.ros_lite.variants import (
+from rmw_manycore_py.papers.roslite.variants import (
     AFTER,
     LOCALIZER,
     SEARCH,
@@ -28,8 +28,8 @@ from rmw_manycore_py.ros_lite.variants import (
     with_vehicle,
     write,
 )
-from rmw_manycore_py.ros_lite.vehicle.course import Course
-from rmw_manycore_py.ros_lite.vehicle.drive_log import DriveFigures
+from rmw_manycore_py.papers.roslite.vehicle.course import Course
+from rmw_manycore_py.papers.roslite.vehicle.drive_log import DriveFigures
 
 pytestmark = [
     pytest.mark.integration,

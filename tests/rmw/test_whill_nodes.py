@@ -26,8 +26,8 @@ from tier4_external_api_msgs.msg import Emergency, Heartbeat
 from tier4_vehicle_msgs.msg import VehicleEmergencyStamped
 from whill_msgs.msg import ModelCr2State
 
-from rmw_manycore_py.whill.course.shape import CourseShape
-from rmw_manycore_py.whill.messages import trajectory_message
+from rmw_manycore_py.papers.roslite2.course.shape import CourseShape
+from rmw_manycore_py.papers.roslite2.messages import trajectory_message
 
 Start = Callable[..., Program]
 GATE = "/vehicle_cmd_gate/service"
@@ -43,7 +43,7 @@ class Bench:
         self._clock = node.create_publisher(Clock, "/clock", 10)
         self._inputs: dict[str, Any] = {}
         words = ros_arguments(["use_sim_time:=true", *parameters])
-        self.program = start(forked_node(f"rmw_manycore_py.whill.nodes.{module}", *words))
+        self.program = start(forked_node(f"rmw_manycore_py.papers.roslite2.nodes.{module}", *words))
         spin_until(node, self._clock.get_subscription_count)
 
     def hear(self, kind: Any, topic: str) -> list[Any]:
@@ -331,12 +331,12 @@ def test_the_converter_keeps_the_header_and_scales(node, start):
 
 
 def test_a_trajectory_reaches_those_that_come_late(node, start, tmp_path):
-    from rmw_manycore_py.whill.course.trajectory_file import write_trajectory
-    from rmw_manycore_py.whill.messages import trajectory_of
+    from rmw_manycore_py.papers.roslite2.course.trajectory_file import write_trajectory
+    from rmw_manycore_py.papers.roslite2.messages import trajectory_of
 
     way = CourseShape().trajectory()
     write_trajectory(tmp_path / "way.csv", way)
-    module = "rmw_manycore_py.whill.nodes.static_trajectory_publisher"
+    module = "rmw_manycore_py.papers.roslite2.nodes.static_trajectory_publisher"
     arguments = ros_arguments([f"trajectory_path:={tmp_path / 'way.csv'}"])
     start(forked_node(module, *arguments)).wait_for("publishing 751 points")
     heard: list[Any] = []
@@ -359,7 +359,7 @@ def test_a_trajectory_reaches_those_that_come_late(node, start, tmp_path):
 )
 def test_wrong_parameters_end_a_node(start, module, parameters, said):
     program = start(
-        forked_node(f"rmw_manycore_py.whill.nodes.{module}", *ros_arguments(parameters))
+        forked_node(f"rmw_manycore_py.papers.roslite2.nodes.{module}", *ros_arguments(parameters))
     )
     assert program.wait() == 2
     assert said in program.output

@@ -7,12 +7,12 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.bench.matrix import host, model
-from rmw_manycore_py.bench.matrix.cases import LARGE, SMALL, cases
-from rmw_manycore_py.bench.matrix.figures import figures
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options, model_option
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.papers.thesis.matrix import host, model
+from rmw_manycore_py.papers.thesis.matrix.cases import LARGE, SMALL, cases
+from rmw_manycore_py.papers.thesis.matrix.figures import figures
 
 _EXAMPLES = examples(
     "manycore bench matrix -o build/matrix --plot",

@@ -7,14 +7,14 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.bench.noc import host, model
-from rmw_manycore_py.bench.noc.cases import SIZES, checked_sizes
-from rmw_manycore_py.bench.noc.figures import figures
-from rmw_manycore_py.bench.noc.routes import chosen, routes
 from rmw_manycore_py.bench.question import Question
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options, model_option
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.papers.thesis.noc import host, model
+from rmw_manycore_py.papers.thesis.noc.cases import SIZES, checked_sizes
+from rmw_manycore_py.papers.thesis.noc.figures import figures
+from rmw_manycore_py.papers.thesis.noc.routes import chosen, routes
 from rmw_manycore_py.topology import usable_cpus
 
 _EXAMPLES = examples(

@@ -7,10 +7,10 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.bench.ros_lite.question import QUESTION
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.papers.roslite.bench.question import QUESTION
 
 
 @click.command(

@@ -8,10 +8,10 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.bench import whill
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.papers.roslite2.bench import drive_question, fault_question
 
 
 @click.command(
@@ -43,4 +43,4 @@ def command(course: Path, namespace: str | None, **options: Any) -> None:
     Off-loaded, on plain Fast DDS, and with a fault in each process. A round consists of 15
     drives over the whole course; each takes two minutes on the default one.
     """
-    answer([whill.drive_question(course, namespace), whill.fault_question(course)], **options)
+    answer([drive_question(course, namespace), fault_question(course)], **options)

@@ -14,7 +14,7 @@ from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapfile.installed import find_mapfile
 from rmw_manycore_py.ndt.maps.map_file import read_points
-from rmw_manycore_py.whill.course.directory import (
+from rmw_manycore_py.papers.roslite2.course.directory import (
     MAP,
     TRAJECTORY,
     WHEEL_BASE_M,
@@ -24,11 +24,11 @@ from rmw_manycore_py.whill.course.directory import (
     thinned,
     write_course,
 )
-from rmw_manycore_py.whill.course.shape import CourseShape
-from rmw_manycore_py.whill.course.streets import build_streets
-from rmw_manycore_py.whill.course.trajectory_file import read_trajectory
-from rmw_manycore_py.whill.course.views import PointView, StreetView
-from rmw_manycore_py.whill.laws.wheelchair import MAX_SPEED_M_S
+from rmw_manycore_py.papers.roslite2.course.shape import CourseShape
+from rmw_manycore_py.papers.roslite2.course.streets import build_streets
+from rmw_manycore_py.papers.roslite2.course.trajectory_file import read_trajectory
+from rmw_manycore_py.papers.roslite2.course.views import PointView, StreetView
+from rmw_manycore_py.papers.roslite2.laws.wheelchair import MAX_SPEED_M_S
 
 MIN_STRAIGHT_M = 5.0
 

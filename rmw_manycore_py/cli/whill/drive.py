@@ -18,9 +18,9 @@ from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, pri
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.launch.processes.environment import OUTSIDE_IMPLEMENTATION, leave_middleware
-from rmw_manycore_py.whill.course.directory import MAPFILE, read_course
-from rmw_manycore_py.whill.laptop.drive_log import DriveLog, Summary
-from rmw_manycore_py.whill.laptop.outcomes import outcomes
+from rmw_manycore_py.papers.roslite2.course.directory import MAPFILE, read_course
+from rmw_manycore_py.papers.roslite2.laptop.drive_log import DriveLog, Summary
+from rmw_manycore_py.papers.roslite2.laptop.outcomes import outcomes
 
 
 @click.command(
@@ -99,10 +99,10 @@ def command(
         raise click.UsageError("--netns is for the nodes that --run or --plain starts")
     if os.environ.get("RMW_IMPLEMENTATION", OUTSIDE_IMPLEMENTATION) != OUTSIDE_IMPLEMENTATION:
         leave_middleware(OUTSIDE_IMPLEMENTATION)
-    from rmw_manycore_py.whill.laptop.faults import fault_of
-    from rmw_manycore_py.whill.laptop.progress import DriveProgress
-    from rmw_manycore_py.whill.laptop.session import DriveOptions, run
-    from rmw_manycore_py.whill.laptop.stack import PlainStack, PlatformStack, Stack
+    from rmw_manycore_py.papers.roslite2.laptop.faults import fault_of
+    from rmw_manycore_py.papers.roslite2.laptop.progress import DriveProgress
+    from rmw_manycore_py.papers.roslite2.laptop.session import DriveOptions, run
+    from rmw_manycore_py.papers.roslite2.laptop.stack import PlainStack, PlatformStack, Stack
 
     if picture is not None:
         load_figure()
@@ -129,7 +129,7 @@ def command(
         _print(log.summary())
         _print_outcomes(log)
     if picture is not None and log.moments:
-        from rmw_manycore_py.whill.laptop.picture import plot
+        from rmw_manycore_py.papers.roslite2.laptop.picture import plot
 
         with writing(picture):
             plot(log, course, picture)
