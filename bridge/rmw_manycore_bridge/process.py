@@ -28,9 +28,9 @@ from rmw_manycore_bridge.topic_inward import InwardTopic
 from rmw_manycore_bridge.topic_outward import OutwardTopic
 from rmw_manycore_bridge.transports import NOTICE, avoid_shared_memory
 from rmw_manycore_py.bridge_plan import Plan
-from rmw_manycore_py.readiness import report_ready
+from rmw_manycore_py.process.readiness import report_ready
+from rmw_manycore_py.process.signals import signal_inbox
 from rmw_manycore_py.routes import Direction
-from rmw_manycore_py.signals import signal_inbox
 
 _NO_NETWORK = "no network interface is up: nothing is bridged; run 'ip link set lo up' and restart"
 

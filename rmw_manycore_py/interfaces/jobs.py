@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.parent_death import dies_with_this_process
+from rmw_manycore_py.process.parent_death import dies_with_this_process
 
 
 @dataclass(frozen=True)

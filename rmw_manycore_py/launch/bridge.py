@@ -12,8 +12,8 @@ from rmw_manycore_py.launch.processes.environment import outside_environment
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.runner import Report, Runner
 from rmw_manycore_py.mapfile.placing.placement import Placement
+from rmw_manycore_py.process.signals import signal_inbox
 from rmw_manycore_py.routes import DIRECTIONS, Direction
-from rmw_manycore_py.signals import signal_inbox
 from rmw_manycore_py.topology import Core
 
 # Cores of a bridge without a mapfile: the first that are not reserved.

@@ -25,7 +25,7 @@ from rmw_manycore_py.launch.processes.node_process import NodeProcess
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import NodeState
 from rmw_manycore_py.launch.schedule import ended, respawned, schedule, started
-from rmw_manycore_py.signals import SignalInbox
+from rmw_manycore_py.process.signals import SignalInbox
 
 Report = Callable[[Event], None]
 Handler = Callable[[], None]

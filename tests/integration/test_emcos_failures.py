@@ -25,7 +25,7 @@ from support import manycore_command, peer_command, wait_until
 from rmw_manycore_py import emcos
 from rmw_manycore_py.emcos.memory import create_memory
 from rmw_manycore_py.emcos.rendezvous import _address
-from rmw_manycore_py.parent_death import dies_with_this_process
+from rmw_manycore_py.process.parent_death import dies_with_this_process
 from rmw_manycore_py.transport import TransportError, TransportTimeoutError
 
 pytestmark = pytest.mark.integration

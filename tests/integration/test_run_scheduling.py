@@ -12,7 +12,7 @@ import pytest
 from support import IS_MANYCORE, manycore_command
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
-from rmw_manycore_py.scheduling import Scheduling, refusal
+from rmw_manycore_py.process.scheduling import Scheduling, refusal
 
 pytestmark = [
     pytest.mark.integration,

@@ -14,7 +14,7 @@ from support import Program, peer_command
 
 from rmw_manycore_py.launch import runner
 from rmw_manycore_py.launch.processes.program import NodeProgram
-from rmw_manycore_py.signals import signal_inbox
+from rmw_manycore_py.process.signals import signal_inbox
 from rmw_manycore_py.topology import Core
 
 pytestmark = pytest.mark.integration
@@ -23,7 +23,7 @@ DIES_AT_ONCE = "import sys; print('why'); sys.exit(int(sys.argv[1]))"
 # Becomes ready in each third process; the sixth one stays.
 COMES_UP_AT_TIMES = """
 import os, signal, sys
-from rmw_manycore_py.readiness import report_ready
+from rmw_manycore_py.process.readiness import report_ready
 with open(sys.argv[1], "a") as file:
     file.write("x")
 starts = os.path.getsize(sys.argv[1])

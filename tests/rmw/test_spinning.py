@@ -7,7 +7,7 @@ import signal
 
 import pytest
 
-from rmw_manycore_py.spinning import spin_once
+from rmw_manycore_py.process.spinning import spin_once
 
 pytestmark = pytest.mark.rmw
 

@@ -20,7 +20,7 @@ from rmw_manycore_hook import plain_environment
 from rmw_manycore_program import own_program
 from rmw_manycore_py.bench.load import busy
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.parent_death import dies_with_this_process
+from rmw_manycore_py.process.parent_death import dies_with_this_process
 
 NODE = "ndt_scan_matcher"
 TOPIC_IN = {

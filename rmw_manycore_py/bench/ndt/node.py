@@ -11,7 +11,7 @@ from pathlib import Path
 from rmw_manycore_py.bench.ndt.driven import Drive, Scenario
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
-from rmw_manycore_py.scheduling import Scheduling, refusal
+from rmw_manycore_py.process.scheduling import Scheduling, refusal
 
 NAME = "node"
 LATENCY = "scan to pose, through the bridge"

@@ -17,7 +17,7 @@ from rmw_manycore_program import own_program
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.processes.birth import pinned_to
-from rmw_manycore_py.parent_death import dies_with_this_process
+from rmw_manycore_py.process.parent_death import dies_with_this_process
 from rmw_manycore_py.ros.ament import package_share
 
 PCL_PACKAGES = ("pcl_registration", "pcl_registration-1.12", "pcl_registration-1.14")

@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from queue import SimpleQueue
 from typing import Protocol, TypeVar
 
-from rmw_manycore_py.helper_process import HelperProcess
+from rmw_manycore_py.process.helper_process import HelperProcess
 
 T = TypeVar("T")
 R = TypeVar("R")

@@ -9,8 +9,8 @@ from typing import Any
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapfile import PlacedNode, check
 from rmw_manycore_py.mapfile.installed import find_mapfile
+from rmw_manycore_py.process.scheduling import Scheduling
 from rmw_manycore_py.reference_system.sample_path import HOT_PATH, PLANNER
-from rmw_manycore_py.scheduling import Scheduling
 
 MAPFILE = "autoware_reference"
 # Priorities used by upstream's benchmarks.

@@ -17,7 +17,7 @@ from rmw_manycore_py.bench.reference.graph import (
 )
 from rmw_manycore_py.bench.reference.kpis import Kpi, kpis, throughput
 from rmw_manycore_py.bench.reference.system import KEEP_ALL, Found, Load, Nodes
-from rmw_manycore_py.scheduling import refusal
+from rmw_manycore_py.process.scheduling import refusal
 
 MESSAGES = {
     "4k": "Message4kb",

@@ -19,7 +19,7 @@ from rmw_manycore_py.bench.reference.graph import Member
 from rmw_manycore_py.bench.reference.text import Loss, Report, losses_in, reports_in
 from rmw_manycore_py.bench.session import TIMEOUT_S, Process, Session, native_command
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.scheduling import scheduled_as
+from rmw_manycore_py.process.scheduling import scheduled_as
 
 Nodes = Literal["rcl", "rclpy"]
 NATIVE = "reference_node"

@@ -16,7 +16,7 @@ from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.tool_node import result_of, tool_node
 from rmw_manycore_py.cli.common.values_argument import DEFAULTS, values_argument
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.spinning import spin_once
+from rmw_manycore_py.process.spinning import spin_once
 
 # Index = value in action_msgs/msg/GoalStatus.
 STATUSES = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")

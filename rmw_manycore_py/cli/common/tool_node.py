@@ -13,7 +13,7 @@ from typing import Any
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.processes.environment import enter_middleware
-from rmw_manycore_py.spinning import spin_once
+from rmw_manycore_py.process.spinning import spin_once
 
 # Timeout for the answer of a node that exists.
 ANSWER_TIMEOUT_S = 5.0

@@ -19,7 +19,7 @@ from rmw_manycore_py.cli.component.wanted_options import wanted_options
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.processes.environment import enter_middleware, program_environment
 from rmw_manycore_py.mapfile.programs.executables import find_executable
-from rmw_manycore_py.parent_death import dies_with_this_process
+from rmw_manycore_py.process.parent_death import dies_with_this_process
 
 PACKAGE, EXECUTABLE = "rclcpp_components", "component_container"
 START_TIMEOUT_S, END_TIMEOUT_S = 30.0, 5.0

@@ -16,7 +16,7 @@ import rmw_manycore_hook
 from rmw_manycore_program import own_program
 from rmw_manycore_py.cli.doctor.built import check_built
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
-from rmw_manycore_py.parent_death import dies_with_this_process
+from rmw_manycore_py.process.parent_death import dies_with_this_process
 from rmw_manycore_py.ros.ament import prefixes
 
 LEAST_PYTHON = (3, 10)

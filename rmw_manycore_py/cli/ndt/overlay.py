@@ -7,10 +7,10 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_py.autoware_overlay import MAP_LOADER, MATCHER, write_overlay
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import writing
 from rmw_manycore_py.cli.common.printing import echo
+from rmw_manycore_py.ndt.autoware_overlay import MAP_LOADER, MATCHER, write_overlay
 
 
 @click.command(

@@ -27,7 +27,7 @@ from rmw_manycore_py.ndt.simulation.drive import (
 from rmw_manycore_py.ndt.simulation.lidar import Lidar
 from rmw_manycore_py.ndt.simulation.street import Street, build_street
 from rmw_manycore_py.ndt.simulation.traffic import Traffic
-from rmw_manycore_py.progress import tracked
+from rmw_manycore_py.process.progress import tracked
 
 MAP_VOXEL_M = 0.2
 

@@ -18,7 +18,7 @@ from rmw_manycore_py.cli.common.printing import echo, print_notices
 from rmw_manycore_py.cli.common.suggestions import closest
 from rmw_manycore_py.cli.common.tool_node import result_of, tool_node
 from rmw_manycore_py.cli.common.values_argument import DEFAULTS, values_argument
-from rmw_manycore_py.spinning import spin_once
+from rmw_manycore_py.process.spinning import spin_once
 
 
 @click.command(

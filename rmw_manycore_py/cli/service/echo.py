@@ -17,8 +17,8 @@ from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.printing import echo, print_notices
 from rmw_manycore_py.cli.common.shown_options import shown_options
 from rmw_manycore_py.cli.common.tool_node import tool_node
+from rmw_manycore_py.process.spinning import spin_once
 from rmw_manycore_py.ros.names import expand
-from rmw_manycore_py.spinning import spin_once
 
 # Index = value in service_msgs/msg/ServiceEventInfo.
 EVENTS = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_RECEIVED")

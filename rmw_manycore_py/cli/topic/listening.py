@@ -15,9 +15,9 @@ from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.process.spinning import spin_once
 from rmw_manycore_py.qos import all_reliable, all_transient_local
 from rmw_manycore_py.ros.names import expand
-from rmw_manycore_py.spinning import spin_once
 
 ANY_QOS = QosOptions()
 

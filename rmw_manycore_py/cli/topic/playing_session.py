@@ -19,12 +19,12 @@ from rmw_manycore_py.cli.topic.alarm import Alarm
 from rmw_manycore_py.cli.topic.gap_notices import gap_notices
 from rmw_manycore_py.cli.topic.play_keys import HELP, press
 from rmw_manycore_py.cli.topic.status_line import StatusLine
+from rmw_manycore_py.process.signals import signal_inbox
 from rmw_manycore_py.recording.play.player import Player, Tally
 from rmw_manycore_py.recording.play.position import Position
 from rmw_manycore_py.recording.play.program import Program
 from rmw_manycore_py.recording.play.stage import Stage
 from rmw_manycore_py.recording.recording import Recording
-from rmw_manycore_py.signals import signal_inbox
 
 _NS_PER_S = 1_000_000_000
 _NS_PER_MS = 1_000_000

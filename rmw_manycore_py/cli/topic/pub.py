@@ -21,7 +21,7 @@ from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.common.values_argument import DEFAULTS, exclude, values_argument
 from rmw_manycore_py.cli.topic.qos_options import QosOptions, qos_options
 from rmw_manycore_py.cli.topic.subscribers import wait_for_subscriptions
-from rmw_manycore_py.spinning import spin_once
+from rmw_manycore_py.process.spinning import spin_once
 
 # Lifetime of the node after its last message, so that slow subscribers can take it.
 KEEP_ALIVE_S = 0.1

@@ -14,13 +14,13 @@ from typing import Any
 from rmw_manycore_py.cli.common.printing import counted, echo, size_text
 from rmw_manycore_py.cli.topic.alarm import Alarm
 from rmw_manycore_py.cli.topic.status_line import StatusLine
+from rmw_manycore_py.process.signals import signal_inbox
 from rmw_manycore_py.recording.output import Output
 from rmw_manycore_py.recording.record.recorder import Recorder
 from rmw_manycore_py.recording.record.side import Side
 from rmw_manycore_py.recording.record.writing import WritingThread
 from rmw_manycore_py.recording.selection import Selection
 from rmw_manycore_py.recording.target import Target
-from rmw_manycore_py.signals import signal_inbox
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.spinning import spin_once
+from rmw_manycore_py.process.spinning import spin_once
 
 # Period of the waiting message.
 TOLD_PERIOD_S = 1.0

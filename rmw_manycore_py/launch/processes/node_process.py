@@ -15,9 +15,9 @@ from rmw_manycore_py.launch.processes.output import OutputReader
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import STOP_STEPS, NodeState, check_transition
 from rmw_manycore_py.launch.processes.terminal import Pipe, Terminal, before_exec
-from rmw_manycore_py.parent_death import dies_with_this_process
-from rmw_manycore_py.readiness import Readiness
-from rmw_manycore_py.scheduling import scheduled_as
+from rmw_manycore_py.process.parent_death import dies_with_this_process
+from rmw_manycore_py.process.readiness import Readiness
+from rmw_manycore_py.process.scheduling import scheduled_as
 
 # How long the children of a node may keep printing after the node has ended.
 ORPHAN_GRACE_S = 1.0

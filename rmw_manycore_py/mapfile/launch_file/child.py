@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_BYTES
-from rmw_manycore_py.parent_death import dies_with_this_process
+from rmw_manycore_py.process.parent_death import dies_with_this_process
 
 _READ_BYTES = 1 << 16
 

@@ -20,7 +20,7 @@ from typing_extensions import override
 
 from rmw_manycore_py.errors import FileError, MapfileError, Problem
 from rmw_manycore_py.mapfile.launch_file.guard import failure
-from rmw_manycore_py.parent_death import dies_with_this_process
+from rmw_manycore_py.process.parent_death import dies_with_this_process
 
 Content = TypeVar("Content")
 

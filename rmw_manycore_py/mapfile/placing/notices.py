@@ -12,10 +12,10 @@ from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode
 from rmw_manycore_py.mapfile.placing.prefix import placed_again
 from rmw_manycore_py.mapfile.programs.source import scan
+from rmw_manycore_py.process.scheduling import refusal
 from rmw_manycore_py.ros.domain import is_elsewhere
 from rmw_manycore_py.ros.names import resolve_topic
 from rmw_manycore_py.ros.patterns import is_pattern
-from rmw_manycore_py.scheduling import refusal
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from rmw_manycore_py.scheduling import Scheduling
+from rmw_manycore_py.process.scheduling import Scheduling
 
 _PINNING = frozenset({"taskset", "numactl"})
 _SCHEDULING = frozenset({"chrt"})

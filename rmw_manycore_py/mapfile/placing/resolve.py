@@ -40,10 +40,10 @@ from rmw_manycore_py.mapfile.placing.topics import (
 )
 from rmw_manycore_py.mapfile.placing.workers import worker_cores
 from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
+from rmw_manycore_py.process.scheduling import Scheduling
 from rmw_manycore_py.ros.ament import canonical_type
 from rmw_manycore_py.ros.domain import default_platform, is_elsewhere
 from rmw_manycore_py.ros.names import full_node_name, resolve_topic
-from rmw_manycore_py.scheduling import Scheduling
 from rmw_manycore_py.topology import (
     WORKER_CPUS,
     Core,

@@ -16,12 +16,12 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 
 from rmw_manycore_py.errors import what_is_wrong
-from rmw_manycore_py.helper_process import HelperProcess, leave_real_time
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.maps import map_process
 from rmw_manycore_py.ndt.maps.map_process import HeldMap, Source
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
+from rmw_manycore_py.process.helper_process import HelperProcess, leave_real_time
 
 NICENESS = 10
 

@@ -13,7 +13,7 @@ from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay import motion, prediction
 from rmw_manycore_py.ndt.replay.guess_source import Approach, Guesses, GuessSource, StackInputs
-from rmw_manycore_py.progress import tracked
+from rmw_manycore_py.process.progress import tracked
 
 FIRST_OFF_M, FIRST_OFF_RAD = 0.3, 0.05  # error of an initial pose set in RViz
 MADE_OF = {

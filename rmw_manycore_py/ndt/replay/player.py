@@ -15,7 +15,6 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
 
-from rmw_manycore_py.cpu_time import tree_cpu_s
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
@@ -24,7 +23,8 @@ from rmw_manycore_py.ndt.messages.point_cloud import encode
 from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay.guess_source import MAP_FRAME, GuessSource
 from rmw_manycore_py.ndt.replay.tally import Played, Tally
-from rmw_manycore_py.spinning import spin_once
+from rmw_manycore_py.process.cpu_time import tree_cpu_s
+from rmw_manycore_py.process.spinning import spin_once
 
 BASE_FRAME = "base_link"
 WARM_UP_PERIOD_S = 0.25

@@ -7,7 +7,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from rmw_manycore_py.ndt.replay.tally import Played, Tally
-from rmw_manycore_py.progress import ProgressLines
+from rmw_manycore_py.process.progress import ProgressLines
 
 
 class ReplayProgress:

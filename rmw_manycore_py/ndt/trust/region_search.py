@@ -6,12 +6,12 @@ from __future__ import annotations
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 
-from rmw_manycore_py.helper_process import HelperProcess, leave_real_time
 from rmw_manycore_py.ndt.geometry.arrays import ScanPoints
 from rmw_manycore_py.ndt.matching.matcher import SerialMatcher
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 from rmw_manycore_py.ndt.trust.search import Found, Region, search
+from rmw_manycore_py.process.helper_process import HelperProcess, leave_real_time
 
 SKETCH_ITERATIONS = 15
 NICENESS = 5

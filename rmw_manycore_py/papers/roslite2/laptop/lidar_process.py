@@ -12,7 +12,7 @@ import numpy as np
 
 from rmw_manycore_program import own_program
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.parent_death import dies_with_this_process
+from rmw_manycore_py.process.parent_death import dies_with_this_process
 
 VOXEL_M = 0.4  # downsampling of published scans, as Autoware does before matching
 READY = "ready"

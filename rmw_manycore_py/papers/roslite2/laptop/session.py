@@ -16,7 +16,6 @@ import rclpy
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from rmw_manycore_py.cpu_time import tree_cpu_s
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.papers.roslite2.course.directory import Course
 from rmw_manycore_py.papers.roslite2.laptop import topics
@@ -35,7 +34,8 @@ from rmw_manycore_py.papers.roslite2.laptop.operator import Operator
 from rmw_manycore_py.papers.roslite2.laptop.plant import Plant, PlantOptions
 from rmw_manycore_py.papers.roslite2.laptop.stack import Stack, pid_of
 from rmw_manycore_py.papers.roslite2.laptop.wheelchair import Wheelchair
-from rmw_manycore_py.spinning import spin_once
+from rmw_manycore_py.process.cpu_time import tree_cpu_s
+from rmw_manycore_py.process.spinning import spin_once
 
 TURN_S = 0.1  # period of the supervising loop
 CPU_NOTE_S = 1.0  # rarely, since this process's CPU time is measured, too

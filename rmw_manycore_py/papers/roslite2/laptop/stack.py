@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from rmw_manycore_program import own_program
-from rmw_manycore_py.cpu_time import process_cpu_s, tree_cpu_s
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.processes.environment import outside_environment
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 from rmw_manycore_py.papers.roslite2.laptop.network_namespace import entering, packets_received
-from rmw_manycore_py.parent_death import dies_with_this_process
+from rmw_manycore_py.process.cpu_time import process_cpu_s, tree_cpu_s
+from rmw_manycore_py.process.parent_death import dies_with_this_process
 
 BRIDGE = "(bridge"
 STOPPING_S = 20.0

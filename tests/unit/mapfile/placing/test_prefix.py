@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from rmw_manycore_py.mapfile.placing.prefix import placed_again
-from rmw_manycore_py.scheduling import Scheduling
+from rmw_manycore_py.process.scheduling import Scheduling
 
 pytestmark = pytest.mark.unit
 

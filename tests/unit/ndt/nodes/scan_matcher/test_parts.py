@@ -12,10 +12,10 @@ import pytest
 from builtin_interfaces.msg import Time
 from tf2_msgs.msg import TFMessage
 
-from rmw_manycore_py.cpu_time import tree_cpu_s
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, inverse
 from rmw_manycore_py.ndt.messages.conversions import transform_stamped
 from rmw_manycore_py.ndt.nodes.scan_matcher.frame_tree import FrameError, FrameTree
+from rmw_manycore_py.process.cpu_time import tree_cpu_s
 
 pytestmark = pytest.mark.unit
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.helper_process import HelperProcess
+from rmw_manycore_py.process.helper_process import HelperProcess
 
 pytestmark = pytest.mark.unit
 

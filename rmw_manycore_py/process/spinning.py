@@ -10,7 +10,7 @@ import signal
 from collections.abc import Iterable
 from typing import Any
 
-from rmw_manycore_py.signals import interrupts_held
+from rmw_manycore_py.process.signals import interrupts_held
 
 LOOK_PERIOD_S = 0.1  # at which a pending interrupt is raised
 

@@ -7,7 +7,7 @@ import signal
 
 import pytest
 
-from rmw_manycore_py.signals import interrupts_held
+from rmw_manycore_py.process.signals import interrupts_held
 
 pytestmark = pytest.mark.unit
 

@@ -25,7 +25,7 @@ from typing import IO, Any, TypeVar
 
 from rmw_manycore_program import own_program
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.parent_death import dies_with_this_process
+from rmw_manycore_py.process.parent_death import dies_with_this_process
 
 T = TypeVar("T")
 
@@ -90,7 +90,7 @@ class HelperProcess:
             self._end()
         if self._process is None:
             self._process = subprocess.Popen(
-                own_program("rmw_manycore_py.helper_process", str(self._niceness)),
+                own_program("rmw_manycore_py.process.helper_process", str(self._niceness)),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 preexec_fn=_before_exec(),
