@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-LEAST_DIFFERENCE = 0.005  # smaller differences between lanes are ignored
-LEAST_GAIN = 0.3  # minimum gain of a move, as a fraction of the difference
+MIN_DIFFERENCE = 0.005  # smaller differences between lanes are ignored
+MIN_GAIN = 0.3  # minimum gain of a move, as a fraction of the difference
 PATIENCE = 3  # consecutive looks that propose the same pair of lanes
 
 
@@ -43,10 +43,10 @@ def best_move(loads: Sequence[Load], lanes: Collection[int]) -> Move | None:
         for index, entry in enumerate(loads)
         if entry.lane == busiest and entry.movable
     }
-    if difference < LEAST_DIFFERENCE or not left:
+    if difference < MIN_DIFFERENCE or not left:
         return None
     index = min(left, key=left.__getitem__)
-    return Move(index, idlest) if left[index] <= (1 - LEAST_GAIN) * difference else None
+    return Move(index, idlest) if left[index] <= (1 - MIN_GAIN) * difference else None
 
 
 class Balance:

@@ -18,7 +18,7 @@ from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.qos import Policies, policies_of
 
 # Minimum queue depth of the bridge, in messages; a larger depth of the other side raises it.
-LEAST_DEPTH = 10
+MIN_DEPTH = 10
 
 
 def common_offer(offers: Iterable[Qos], overrides: Policies) -> Qos:
@@ -60,7 +60,7 @@ def _unmet(policy: str, strong: str, asked: str | None, offered: Sequence[str]) 
 
 def request_for(offer: Qos, depth: int) -> Qos:
     """Return the QoS of a subscription that matches such publishers, without lifespan."""
-    kept = max(offer.depth, LEAST_DEPTH, depth)
+    kept = max(offer.depth, MIN_DEPTH, depth)
     return replaced(offer, {"history": "keep_last", "depth": kept, "lifespan_ns": None})
 
 

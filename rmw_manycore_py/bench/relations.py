@@ -25,9 +25,9 @@ Side = Literal[-1, 0, 1]
 Found = tuple[Side, str]
 
 
-def side(value: float, *, least: float = -math.inf, most: float = math.inf) -> Side:
+def side(value: float, *, min_value: float = -math.inf, max_value: float = math.inf) -> Side:
     """Return on which side of a range a value is, its ends included."""
-    return -1 if value < least else 1 if value > most else 0
+    return -1 if value < min_value else 1 if value > max_value else 0
 
 
 @dataclass(frozen=True)

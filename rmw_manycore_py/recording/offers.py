@@ -15,7 +15,7 @@ from rmw_manycore_py.words import Durability, History, Liveliness, Reliability
 _NS_PER_S = 1_000_000_000
 _INFINITE = {"sec": 9223372036, "nsec": 854775807}  # RMW_DURATION_INFINITE
 # Minimum seconds of "no limit", which older middlewares wrote in different ways.
-_LEAST_INFINITE_S = 0x7FFFFFFF
+_MIN_INFINITE_S = 0x7FFFFFFF
 # Versions up to 8 of the format use the values of rmw/types.h.
 _NUMBERS = {
     "history": {0: "system_default", 1: "keep_last", 2: "keep_all", 3: "unknown"},
@@ -93,6 +93,6 @@ def _duration(ns: int | None) -> dict[str, int]:
 
 def _nanoseconds(duration: Mapping[str, int]) -> int | None:
     seconds, rest = int(duration["sec"]), int(duration["nsec"])
-    if seconds >= _LEAST_INFINITE_S or not (seconds or rest):
+    if seconds >= _MIN_INFINITE_S or not (seconds or rest):
         return None
     return seconds * _NS_PER_S + rest

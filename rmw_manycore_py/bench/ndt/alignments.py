@@ -25,7 +25,7 @@ NAME = f"time per scan, direct7, {VOXEL_SIZE_M:g} m"
 TAIL = "time per scan / median of that scan"
 MIXED = "time per scan / median of all scans"
 IMBALANCE = "largest share of a pass / mean share"
-MOST_WORKERS = 16
+MAX_WORKERS = 16
 REPEATS = 5
 SHARE_REPEATS = 100
 # What the workers of ROS-lite2 are held against (V-B, Fig. 13).
@@ -63,7 +63,7 @@ def _measure(run: Run, pclomp: Path | None) -> list[Result]:
     with ExitStack() as stack:
         contenders: dict[str, Measure] = {}
         curves: dict[str, Curve] = {}
-        for count in range(1, min(len(cpus), MOST_WORKERS) + 1):
+        for count in range(1, min(len(cpus), MAX_WORKERS) + 1):
             matcher: Matcher = stack.enter_context(WorkerMatcher(options, cpus[:count]))
             matcher.set_map(voxel_map)
             contenders[workers(count)] = _own(run, matcher.align)
@@ -123,7 +123,7 @@ def _mixed(result: Result) -> Result:
 
 def _imbalance(run: Run, options: MatcherOptions) -> list[Result]:
     """Return the balance of a pass over 16 workers, with each share timed on one CPU."""
-    if not run.wants(f"{IMBALANCE}: {workers(MOST_WORKERS)}"):
+    if not run.wants(f"{IMBALANCE}: {workers(MAX_WORKERS)}"):
         return []
     voxel_map = map_for(options)
     profiler = _ndt_bench.Profiler(match_options(options))
@@ -132,13 +132,13 @@ def _imbalance(run: Run, options: MatcherOptions) -> list[Result]:
         for scan, pose in zip(world().scans, world().poses, strict=True):
             points = scan_points(scan)
             shares = [
-                profiler.time_shares_ns(voxel_map.finest, points, pose, MOST_WORKERS)
+                profiler.time_shares_ns(voxel_map.finest, points, pose, MAX_WORKERS)
                 for _ in range(run.iterations(SHARE_REPEATS))
             ]
             # The minimum is the undisturbed time of a share.
             times = [min(share) for share in zip(*shares, strict=True)]
             found.append(max(times) * len(times) / sum(times))
-    return [Result(IMBALANCE, workers(MOST_WORKERS), "x", tuple(found))]
+    return [Result(IMBALANCE, workers(MAX_WORKERS), "x", tuple(found))]
 
 
 def _median(samples: Sequence[float]) -> float:
@@ -151,5 +151,5 @@ def _goals() -> tuple[Goal, ...]:
         Goal(NAME, workers(2), "better", 1.8, apart(2)),
         *(Goal(TAIL, workers(count), "within", 1.5, statistic="p99") for count in (1, 2)),
         Goal(NAME, workers(1), "better", 1, LAPTOP),
-        Goal(IMBALANCE, workers(MOST_WORKERS), "within", 1.05),
+        Goal(IMBALANCE, workers(MAX_WORKERS), "within", 1.05),
     )

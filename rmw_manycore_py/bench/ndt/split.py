@@ -20,9 +20,9 @@ SPLIT = f"search + derivatives apart, radius, {VOXEL_SIZE_M:g} m"
 PROFILE = f"share of an alignment, radius, {VOXEL_SIZE_M:g} m"
 PASSES = "search + derivatives, of the passes"
 WHOLE = "both on all cores"
-MOST_CORES = 8
-MOST_FOR_SEARCH = 3
-MOST_FOR_DERIVATIVES = 5
+MAX_CORES = 8
+MAX_FOR_SEARCH = 3
+MAX_FOR_DERIVATIVES = 5
 REPEATS = 5
 
 
@@ -34,7 +34,7 @@ def measure(run: Run) -> list[Result]:
 
 def _measure_split(run: Run, options: MatcherOptions) -> list[Result]:
     voxel_map = map_for(options)
-    cpus = usable()[:MOST_CORES]
+    cpus = usable()[:MAX_CORES]
     contenders: dict[str, Measure] = {}
     curves: dict[str, Curve] = {}
     for derivatives, search in _ways(len(cpus)):
@@ -65,8 +65,8 @@ def _ways(cores: int) -> list[tuple[int, int]]:
     """Return pairs of numbers of cores, for derivatives and for the search."""
     return [(cores, 0)] + [
         (derivatives, search)
-        for search in range(1, MOST_FOR_SEARCH + 1)
-        for derivatives in range(1, min(MOST_FOR_DERIVATIVES, cores - search) + 1)
+        for search in range(1, MAX_FOR_SEARCH + 1)
+        for derivatives in range(1, min(MAX_FOR_DERIVATIVES, cores - search) + 1)
     ]
 
 

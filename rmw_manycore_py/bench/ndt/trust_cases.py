@@ -34,7 +34,7 @@ ALONG_M = (12.0, 20.0)
 HISTORY = 20
 HISTORY_M, HISTORY_RAD = 0.03, 0.003  # error of the preceding poses
 SEED = 11
-FEWEST_SCORES_BEFORE = 3
+MIN_SCORES_BEFORE = 3
 
 
 @dataclass(frozen=True)
@@ -205,7 +205,7 @@ def _before(
     drive: Drive, index: int, scores: dict[int, float], generator: np.random.Generator
 ) -> tuple[Before, ...]:
     """Return the preceding scans, with scores of tested ones."""
-    if not drive.is_drive or sum(other < index for other in scores) < FEWEST_SCORES_BEFORE:
+    if not drive.is_drive or sum(other < index for other in scores) < MIN_SCORES_BEFORE:
         return ()
     found = []
     for other in range(max(0, index - HISTORY), index):

@@ -29,7 +29,7 @@ SEEN = "times that a node gets, of 1,000"
 CPU = "CPU time of all nodes per second of simulated time"
 NODES = (10, 25, 50, 100)
 # Its source does not find 100 nodes within its time.
-MOST_NODES_OF_FAST_DDS = 50
+MAX_NODES_OF_FAST_DDS = 50
 RATE_HZ = 1000
 BYTES = 16  # header and time
 WARM_UP, TIMES = 100, 3000
@@ -42,7 +42,7 @@ def measure(run: Run) -> list[Result]:
     """Return age, coverage and cost of simulated time, over the nodes."""
     results: list[Result] = []
     for middleware in (ONE, OWN, BRIDGED, FAST_DDS):
-        counts = followed(middleware, NODES, MOST_NODES_OF_FAST_DDS)
+        counts = followed(middleware, NODES, MAX_NODES_OF_FAST_DDS)
         measured = partial(_tick, run, middleware)
         results += along(run, f"{AGE}: {middleware.name}", counts, "nodes", measured)
     return results
@@ -121,7 +121,7 @@ def wait_until_heard(session: Session, topic: str, nodes: int) -> None:
 
 
 _one, _spread, _bridged = (at_count(each.name, NODES[-1], "nodes") for each in (ONE, OWN, BRIDGED))
-_fast_dds = at_count(FAST_DDS.name, MOST_NODES_OF_FAST_DDS, "nodes")
+_fast_dds = at_count(FAST_DDS.name, MAX_NODES_OF_FAST_DDS, "nodes")
 GOALS = (
     Goal(AGE, _one, "better", 1.0, _fast_dds),
     Goal(AGE, _spread, "better", 1.0, _fast_dds),

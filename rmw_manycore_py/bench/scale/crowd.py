@@ -22,7 +22,7 @@ JOIN = "joining at one moment"
 PUBLISHERS = {0: "", 5: ", 5 publishers each"}
 PROCESSES = (50, 100, 200, 500)
 # Its processes discover each other pairwise.
-MOST_PROCESSES_OF_FAST_DDS = 100
+MAX_PROCESSES_OF_FAST_DDS = 100
 ROUNDS = 5
 
 
@@ -33,7 +33,7 @@ def measure(run: Run) -> list[Result]:
         for publishers, curve in PUBLISHERS.items():
             measured = partial(_join, run, middleware, publishers)
             name = f"{JOIN}: {middleware.name}{curve}"
-            counts = followed(middleware, PROCESSES, MOST_PROCESSES_OF_FAST_DDS)
+            counts = followed(middleware, PROCESSES, MAX_PROCESSES_OF_FAST_DDS)
             results += along(run, name, counts, "processes", measured)
     return results
 

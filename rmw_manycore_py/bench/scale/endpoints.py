@@ -19,7 +19,7 @@ BESIDE = "creating a publisher of another topic meanwhile"
 PUBLISH = "publishing to a topic with as many publishers"
 ENDPOINTS = (25, 50, 100, 200, 400, 800)
 # Fast DDS matches endpoints pairwise by messages: more would take minutes.
-MOST_ENDPOINTS_OF_FAST_DDS = 50
+MAX_ENDPOINTS_OF_FAST_DDS = 50
 ITERATIONS = 200
 FULL, ROOM = "queues full", "with room"
 DEPTHS = {FULL: 1, ROOM: 1000}
@@ -29,7 +29,7 @@ def measure(run: Run) -> list[Result]:
     """Return the time for creating and publishing, over the endpoints of a topic."""
     results: list[Result] = []
     for middleware in (INSIDE, FAST_DDS):
-        counts = followed(middleware, ENDPOINTS, MOST_ENDPOINTS_OF_FAST_DDS)
+        counts = followed(middleware, ENDPOINTS, MAX_ENDPOINTS_OF_FAST_DDS)
         measured = partial(_match, run, middleware)
         results += along(run, f"{PUBLISH}: {middleware.name}", counts, "endpoints", measured)
     return results

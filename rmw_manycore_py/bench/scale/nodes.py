@@ -51,7 +51,7 @@ BESIDE_FEW = f", with {FEW} nodes instead"
 NODES = (30, 60, 250, 500, 1000)
 PROMISED = 500
 # Fast DDS processes discover each other pairwise: more would take minutes.
-MOST_NODES_OF_FAST_DDS = 60
+MAX_NODES_OF_FAST_DDS = 60
 KILLED = 0.4  # fraction of the processes
 JOINS = 5
 READS = 20
@@ -68,7 +68,7 @@ def measure(run: Run) -> list[Result]:
     """Return the cost of starting, joining, waiting, reading and killing, over the nodes."""
     results: list[Result] = []
     for middleware in (OWN, FAST_DDS):
-        counts = followed(middleware, NODES, MOST_NODES_OF_FAST_DDS)
+        counts = followed(middleware, NODES, MAX_NODES_OF_FAST_DDS)
         measured = partial(_watch, run, spread(middleware, MAX_PROCESSES))
         results += along(run, f"{UP}: {middleware.name}", counts, "nodes", measured)
     return results

@@ -19,7 +19,7 @@ from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
 from rmw_manycore_py.process.parent_death import dies_with_this_process
 from rmw_manycore_py.ros.ament import prefixes
 
-LEAST_PYTHON = (3, 10)
+MIN_PYTHON = (3, 10)
 ROS_PACKAGE = "ros-rclpy"
 ROS_VERSION = "7.1."  # rclpy of Jazzy
 REINSTALL = "pip install --force-reinstall --no-deps rmw-manycore"
@@ -47,9 +47,9 @@ def check_install() -> Iterator[Finding]:
 
 def _python() -> Finding:
     version = ".".join(map(str, sys.version_info[:3]))
-    expected = ".".join(map(str, LEAST_PYTHON))
+    expected = ".".join(map(str, MIN_PYTHON))
     advice = f"use python {expected} or later"
-    return judged("python", sys.version_info >= LEAST_PYTHON, f"{version}, {sys.prefix}", advice)
+    return judged("python", sys.version_info >= MIN_PYTHON, f"{version}, {sys.prefix}", advice)
 
 
 def _ros() -> Finding:

@@ -18,7 +18,7 @@ from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, to_rpy
 from rmw_manycore_py.ndt.matching.alignment import Alignment
 
 BEST = 5  # number of results around which later guesses are drawn
-LEAST_SHARE = 0.05  # deviation of the last guesses, relative to the first
+MIN_SHARE = 0.05  # deviation of the last guesses, relative to the first
 
 Align = Callable[[Matrix], Alignment]
 
@@ -53,7 +53,7 @@ def particles(
             guess = generator.normal(mean, deviations)
             guess[5] = generator.uniform(-np.pi, np.pi)
         else:
-            share = max(LEAST_SHARE, 1.0 - index / count)
+            share = max(MIN_SHARE, 1.0 - index / count)
             guess = _near(found[index % len(found)], deviations, share, generator)
         T_guess = from_xyz_rpy(guess[:3], guess[3:])
         particle = Particle(T_guess, align(T_guess))

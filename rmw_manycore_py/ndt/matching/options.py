@@ -123,8 +123,8 @@ class MatcherOptions:
                     raise _error(name, "decreasing numbers above 1", factors)
                 finer = factor
         if len(self.coarser_levels) >= MAX_LEVELS:
-            most = f"at most {MAX_LEVELS - 1} with wide_levels"
-            raise _error("coarse_levels", most, self.coarser_levels)
+            limit = f"at most {MAX_LEVELS - 1} with wide_levels"
+            raise _error("coarse_levels", limit, self.coarser_levels)
 
     def _check_offsets(self) -> None:
         for offset in self.offsets_m:
@@ -135,11 +135,11 @@ class MatcherOptions:
         if not self.offsets_m:
             raise _error("offsets_m", "at least one pair of numbers", self.offsets_m)
 
-    def _check_number(self, name: str, value: float, least: float, most: float) -> None:
+    def _check_number(self, name: str, value: float, min_value: float, max_value: float) -> None:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise _error(name, "a number", value)
-        if not (math.isfinite(value) and least <= value <= most):
-            raise _error(name, f"{least:g} to {most:g}", value)
+        if not (math.isfinite(value) and min_value <= value <= max_value):
+            raise _error(name, f"{min_value:g} to {max_value:g}", value)
 
 
 def _error(name: str, expected: str, found: object) -> ManycoreError:

@@ -35,20 +35,20 @@ from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledLog
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 
-LEAST_VARIANCE = 1e-8  # minimum variance of a measurement; zero would be singular
+MIN_VARIANCE = 1e-8  # minimum variance of a measurement; zero would be singular
 
 
 @dataclass(frozen=True)
 class EkfParameters:
     """Parameters with Autoware's names, plus the sideways deviation; frequencies in Hz."""
 
-    frequency_hz: float = parameter("predict_frequency", 50.0, least=1.0, most=1000.0)
+    frequency_hz: float = parameter("predict_frequency", 50.0, min_value=1.0, max_value=1000.0)
     pose_frame: str = parameter("pose_frame_id", "map")
     child_frame: str = parameter("child_frame_id", "base_link")
-    stddev_sideways: float = parameter("proc_stddev_sideways_c", 0.5, least=0.0)
-    stddev_yaw: float = parameter("proc_stddev_yaw_c", 0.005, least=0.0)
-    stddev_vx: float = parameter("proc_stddev_vx_c", 10.0, least=0.0)
-    stddev_wz: float = parameter("proc_stddev_wz_c", 5.0, least=0.0)
+    stddev_sideways: float = parameter("proc_stddev_sideways_c", 0.5, min_value=0.0)
+    stddev_yaw: float = parameter("proc_stddev_yaw_c", 0.005, min_value=0.0)
+    stddev_vx: float = parameter("proc_stddev_vx_c", 10.0, min_value=0.0)
+    stddev_wz: float = parameter("proc_stddev_wz_c", 5.0, min_value=0.0)
     publish_tf: bool = parameter("publish_tf", True)
     activated: bool = parameter("activated", True)
 
@@ -119,7 +119,7 @@ class EkfLocalizer(Node):
     def _on_twist(self, message: Any) -> None:
         twist = message.twist.twist
         covariance = np.asarray(message.twist.covariance).reshape(6, 6)
-        noise = np.diag(np.maximum(np.diag(covariance)[[0, 5]], LEAST_VARIANCE))
+        noise = np.diag(np.maximum(np.diag(covariance)[[0, 5]], MIN_VARIANCE))
         v, w = float(twist.linear.x), float(twist.angular.z)
         if not np.isfinite([v, w, *noise.ravel()]).all():
             self._complain("twist ignored: it is not finite")
@@ -166,7 +166,7 @@ class EkfLocalizer(Node):
         except PoseError as error:
             self._complain(f"pose ignored: {error}")
             return None
-        diagonal = np.maximum(np.diag(covariance), LEAST_VARIANCE) - np.diag(covariance)
+        diagonal = np.maximum(np.diag(covariance), MIN_VARIANCE) - np.diag(covariance)
         return T, covariance + np.diag(diagonal)
 
     def _on_trigger(self, request: Any, response: Any) -> Any:

@@ -43,7 +43,7 @@ class LoaderParameters:
     metadata: str = parameter("pcd_metadata_path", "")
     downsampled: bool = parameter("enable_downsampled_whole_load", False)
     downsampled_leaf_m: float = parameter("leaf_size", 3.0, above=0.0)
-    leaf_m: float = parameter("map_leaf_size", 0.0, least=0.0)
+    leaf_m: float = parameter("map_leaf_size", 0.0, min_value=0.0)
     map_topic: str = parameter("map_topic", "pointcloud_map")
     map_frame: str = parameter("map_frame", "map")
     radius_m: float = parameter("map_radius", 150.0, above=0.0)

@@ -25,9 +25,9 @@ REPEAT_S = 1.0
 class FilterParameters:
     """Autoware's parameters; metres."""
 
-    x_m: float = parameter("voxel_size_x", 0.3, least=0.01, most=100.0)
-    y_m: float = parameter("voxel_size_y", 0.3, least=0.01, most=100.0)
-    z_m: float = parameter("voxel_size_z", 0.1, least=0.01, most=100.0)
+    x_m: float = parameter("voxel_size_x", 0.3, min_value=0.01, max_value=100.0)
+    y_m: float = parameter("voxel_size_y", 0.3, min_value=0.01, max_value=100.0)
+    z_m: float = parameter("voxel_size_z", 0.1, min_value=0.01, max_value=100.0)
 
 
 class VoxelGridFilter(Node):

@@ -25,7 +25,7 @@ VOXEL_M = 0.25  # scans are downsampled to about ten thousand points
 TURNS_RAD = np.radians(np.arange(-60.0, 61.0, 15.0))
 OPTIONS = MatcherOptions()  # the matcher's defaults, with all levels
 # Right motions have 2.68 and more, wrong ones 2.54 and less (docs/design/ndt_replay.md).
-LEAST_LIKELIHOOD = 2.6
+MIN_LIKELIHOOD = 2.6
 
 
 def of_reference(drive: Recording) -> Iterator[Matrix]:
@@ -80,7 +80,7 @@ def _problem(fit: Alignment | None) -> str:
     if not fit.converged:
         return fit.why
     found = fit.nearest_voxel_likelihood
-    return "" if found >= LEAST_LIKELIHOOD else f"likelihood {found:.2f} of {LEAST_LIKELIHOOD:g}"
+    return "" if found >= MIN_LIKELIHOOD else f"likelihood {found:.2f} of {MIN_LIKELIHOOD:g}"
 
 
 def _thinned(drive: Recording, index: int) -> Points:

@@ -15,7 +15,7 @@ from rmw_manycore_py.ndt.matching.alignment import Alignment
 from rmw_manycore_py.ndt.trust.motion import Believed, Expectation, MotionModel
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
 
-LEAST_SHARE_IN_MAP = 0.3  # of the points: below, the vehicle is outside the map or elsewhere
+MIN_SHARE_IN_MAP = 0.3  # of the points: below, the vehicle is outside the map or elsewhere
 DROP_SHARE = 0.88  # of the median of recent scores: lower is a sudden drop
 DROP_SCORES = 5
 SURE_AFTER = 3  # consecutive poses that each agree with the previous one
@@ -130,7 +130,7 @@ class PoseJudge:
         score = alignment.nearest_voxel_likelihood
         if alignment.is_degenerate:
             return f"no convergence: {alignment.why}"
-        if alignment.share_in_map < LEAST_SHARE_IN_MAP:
+        if alignment.share_in_map < MIN_SHARE_IN_MAP:
             return f"only {100 * alignment.share_in_map:.0f} % of the points lie in the map"
         if not score > self.level.level:
             return f"the score {score:.3f} is not above the level {self.level.level:.3f}"

@@ -16,7 +16,7 @@ CLOCK_TOPIC = "/clock"
 _NS_PER_S = 1_000_000_000
 # Minimum depth, since DDS does not announce a publisher's history. A larger depth of latched topics
 # would also deliver outdated messages; for others it only absorbs bursts.
-_LEAST_DEPTH = 10
+_MIN_DEPTH = 10
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def offer_of(offers: Sequence[Qos]) -> Qos:
     return Qos(
         reliability="reliable" if reliable else "best_effort",
         durability="transient_local" if kept else "volatile",
-        depth=depth if kept else max(depth, _LEAST_DEPTH),
+        depth=depth if kept else max(depth, _MIN_DEPTH),
         deadline_ns=_shortest(offer.deadline_ns for offer in offers),
         liveliness="manual_by_topic" if by_hand else "automatic",
         liveliness_lease_ns=_shortest(offer.liveliness_lease_ns for offer in offers),

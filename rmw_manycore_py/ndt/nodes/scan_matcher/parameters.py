@@ -24,18 +24,20 @@ class MatcherParameters:
     map_frame: str = parameter("frame.map_frame", "map")
 
     timeout_s: float = parameter("sensor_points.timeout_sec", 1.0, above=0.0)
-    required_distance_m: float = parameter("sensor_points.required_distance", 10.0, least=0.0)
+    required_distance_m: float = parameter("sensor_points.required_distance", 10.0, min_value=0.0)
 
-    trans_epsilon: float = parameter("ndt.trans_epsilon", 0.01, above=0.0, most=1.0)
-    step_size: float = parameter("ndt.step_size", 0.1, above=0.0, most=10.0)
-    resolution_m: float = parameter("ndt.resolution", 2.0, least=0.1, most=100.0)
-    max_iterations: int = parameter("ndt.max_iterations", 30, least=1, most=1000)
-    num_threads: int = parameter("ndt.num_threads", 4, least=1, most=256)
+    trans_epsilon: float = parameter("ndt.trans_epsilon", 0.01, above=0.0, max_value=1.0)
+    step_size: float = parameter("ndt.step_size", 0.1, above=0.0, max_value=10.0)
+    resolution_m: float = parameter("ndt.resolution", 2.0, min_value=0.1, max_value=100.0)
+    max_iterations: int = parameter("ndt.max_iterations", 30, min_value=1, max_value=1000)
+    num_threads: int = parameter("ndt.num_threads", 4, min_value=1, max_value=256)
     regularization: bool = parameter("ndt.regularization.enable", False)
-    regularization_scale: float = parameter("ndt.regularization.scale_factor", 0.01, least=0.0)
+    regularization_scale: float = parameter("ndt.regularization.scale_factor", 0.01, min_value=0.0)
 
-    particles: int = parameter("initial_pose_estimation.particles_num", 200, least=1, most=100000)
-    startup_trials: int = parameter("initial_pose_estimation.n_startup_trials", 100, least=1)
+    particles: int = parameter(
+        "initial_pose_estimation.particles_num", 200, min_value=1, max_value=100000
+    )
+    startup_trials: int = parameter("initial_pose_estimation.n_startup_trials", 100, min_value=1)
 
     initial_pose_timeout_s: float = parameter("validation.initial_pose_timeout_sec", 1.0, above=0.0)
     initial_pose_distance_m: float = parameter(
@@ -47,7 +49,7 @@ class MatcherParameters:
     critical_exe_time_ms: float = parameter(
         "validation.critical_upper_bound_exe_time_ms", 100.0, above=0.0
     )
-    skipping_publish_num: int = parameter("validation.skipping_publish_num", 5, least=1)
+    skipping_publish_num: int = parameter("validation.skipping_publish_num", 5, min_value=1)
 
     converged_param_type: int = parameter(
         "score_estimation.converged_param_type",
@@ -55,10 +57,12 @@ class MatcherParameters:
         choices=(TRANSFORM_PROBABILITY, NEAREST_VOXEL_LIKELIHOOD),
     )
     min_transform_probability: float = parameter(
-        "score_estimation.converged_param_transform_probability", 3.0, least=0.0
+        "score_estimation.converged_param_transform_probability", 3.0, min_value=0.0
     )
     min_nearest_voxel_likelihood: float = parameter(
-        "score_estimation.converged_param_nearest_voxel_transformation_likelihood", 2.3, least=0.0
+        "score_estimation.converged_param_nearest_voxel_transformation_likelihood",
+        2.3,
+        min_value=0.0,
     )
     no_ground: bool = parameter("score_estimation.no_ground_points.enable", False)
     ground_margin_m: float = parameter(
@@ -108,17 +112,21 @@ class OwnParameters:
     step_rule: StepRule | Unchosen = parameter(
         "ndt.step_rule", "", choices=("", "trust_region", "clamped", "more_thuente")
     )
-    outlier_ratio: float = parameter("ndt.outlier_ratio", 0.55, above=0.0, most=0.99)
-    scan_limit: int = parameter("sensor_points.limit", 200_000, least=100, most=10_000_000)
-    max_matched: int = parameter("sensor_points.max_matched", 30_000, least=100, most=10_000_000)
+    outlier_ratio: float = parameter("ndt.outlier_ratio", 0.55, above=0.0, max_value=0.99)
+    scan_limit: int = parameter("sensor_points.limit", 200_000, min_value=100, max_value=10_000_000)
+    max_matched: int = parameter(
+        "sensor_points.max_matched", 30_000, min_value=100, max_value=10_000_000
+    )
     deskew: bool = parameter("sensor_points.deskew", False)
     map_path: str = parameter("map_path", "")
-    map_leaf_m: float = parameter("map_leaf_size", 0.0, least=0.0)
+    map_leaf_m: float = parameter("map_leaf_size", 0.0, min_value=0.0)
     behaviour: Behaviour = parameter("behaviour", "robust", choices=("robust", "autoware"))
-    guess_wait_s: float = parameter("validation.initial_pose_wait_sec", 0.05, least=0.0, most=10.0)
+    guess_wait_s: float = parameter(
+        "validation.initial_pose_wait_sec", 0.05, min_value=0.0, max_value=10.0
+    )
     activated: bool = parameter("activated", False)
     worker_cpus: tuple[int, ...] = parameter("worker_host_cpus", (), whole=True)
-    recovery_after_scans: int = parameter("recovery.after_scans", 5, least=0, most=10_000)
-    recovery_radius_m: float = parameter("recovery.radius", 20.0, least=5.0, most=200.0)
+    recovery_after_scans: int = parameter("recovery.after_scans", 5, min_value=0, max_value=10_000)
+    recovery_radius_m: float = parameter("recovery.radius", 20.0, min_value=5.0, max_value=200.0)
     last_pose_path: str = parameter("last_pose_path", "")
-    realtime_priority: int = parameter("realtime_priority", 0, least=0, most=99)
+    realtime_priority: int = parameter("realtime_priority", 0, min_value=0, max_value=99)

@@ -21,14 +21,18 @@ class Range:
     """Allowed values of a number; `choices` overrides the limits."""
 
     above: float | None = None
-    least: float | None = None
-    most: float | None = None
+    min_value: float | None = None
+    max_value: float | None = None
     choices: tuple[Any, ...] = ()
 
     def __str__(self) -> str:
         if self.choices:
             return "one of " + ", ".join(str(choice) for choice in self.choices)
-        limits = [("more than", self.above), ("at least", self.least), ("at most", self.most)]
+        limits = [
+            ("more than", self.above),
+            ("at least", self.min_value),
+            ("at most", self.max_value),
+        ]
         words = [f"{word} {limit:g}" for word, limit in limits if limit is not None]
         return " and ".join(words) or "finite"
 
@@ -39,8 +43,8 @@ class Range:
         return not (
             not np.isfinite(value)
             or (self.above is not None and value <= self.above)
-            or (self.least is not None and value < self.least)
-            or (self.most is not None and value > self.most)
+            or (self.min_value is not None and value < self.min_value)
+            or (self.max_value is not None and value > self.max_value)
         )
 
 

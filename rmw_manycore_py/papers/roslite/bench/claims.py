@@ -23,14 +23,16 @@ def light_similar(medians: Medians) -> Found:
     """Messages and sessions take the same for light data."""
     ratios = [_message_to_session(medians, node, n) for node in LIGHT for n in sending.LANES]
     worst = max(ratios, key=lambda ratio: max(ratio, 1 / ratio))
-    return side(worst, least=1 / SIMILAR, most=SIMILAR), f"message / session {_range(ratios)}"
+    return side(
+        worst, min_value=1 / SIMILAR, max_value=SIMILAR
+    ), f"message / session {_range(ratios)}"
 
 
 def heavy_faster(medians: Medians) -> Found:
     """Sessions are faster than messages for whole lanes."""
     ratios = [_message_to_session(medians, "lane_select", n) for n in sending.LANES]
     found = " and ".join(f"{ratio:.2f}" for ratio in ratios)
-    return side(min(ratios), least=FASTER), f"message / session {found} for whole lanes"
+    return side(min(ratios), min_value=FASTER), f"message / session {found} for whole lanes"
 
 
 def _message_to_session(medians: Medians, node: str, waypoints: int) -> float:
@@ -43,7 +45,7 @@ def fifty_times(medians: Medians) -> Found:
     alignment = end_to_end.ALIGNMENT
     ratio = medians[alignment, end_to_end.BEFORE] / medians[alignment, end_to_end.AFTER]
     found = f"x {ratio:.2f}, here against one process that has the whole map"
-    return side(ratio, least=FIFTY[0], most=FIFTY[1]), found
+    return side(ratio, min_value=FIFTY[0], max_value=FIFTY[1]), found
 
 
 def scales(medians: Medians) -> Found:
@@ -53,13 +55,13 @@ def scales(medians: Medians) -> Found:
         times = [medians[split.QUESTION, split.contender(n, searches)] for n in split.DERIVATIVES]
         steps += [before / after for before, after in pairwise(times)]
         ends.append(f"{times[0]:.2f} to {times[-1]:.2f} ms with {searches} of radius_search")
-    return side(min(steps), least=FASTER), "; ".join(ends)
+    return side(min(steps), min_value=FASTER), "; ".join(ends)
 
 
 def converges(medians: Medians) -> Found:
     """Alignments usually end within five passes."""
     passes = medians[end_to_end.PASSES, end_to_end.AFTER]
-    return side(passes, most=PASSES), f"{passes:g} passes (median)"
+    return side(passes, max_value=PASSES), f"{passes:g} passes (median)"
 
 
 def shorter(medians: Medians) -> Found:
@@ -67,19 +69,19 @@ def shorter(medians: Medians) -> Found:
     command = end_to_end.COMMAND
     before, after = medians[command, end_to_end.BEFORE], medians[command, end_to_end.AFTER]
     ratio = before / after
-    return side(ratio, least=FASTER), f"{before:.1f} to {after:.1f} ms, x {ratio:.2f}"
+    return side(ratio, min_value=FASTER), f"{before:.1f} to {after:.1f} ms, x {ratio:.2f}"
 
 
 def in_time(medians: Medians) -> Found:
     """After parallelization each command comes within 100 ms."""
     late = medians[end_to_end.LATE, end_to_end.AFTER]
-    return side(late, most=0.0), f"{late:g} scans late or lost"
+    return side(late, max_value=0.0), f"{late:g} scans late or lost"
 
 
 def room_left(medians: Medians) -> Found:
     """About half of a cluster's memory is left for topics."""
     left = medians[memory.SMEM, memory.LEFT]
-    return side(left, least=memory.LEFT_KIB), f"{left:.0f} KiB of 2,048"
+    return side(left, min_value=memory.LEFT_KIB), f"{left:.0f} KiB of 2,048"
 
 
 def _range(ratios: list[float]) -> str:

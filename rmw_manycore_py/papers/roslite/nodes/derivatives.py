@@ -22,7 +22,7 @@ from rmw_manycore_py.papers.roslite.messages import pairs_of
 class DerivativesParameters:
     """Parameters of the node: which of the derivatives it is, from 1."""
 
-    number: int = parameter("number", 1, least=1)
+    number: int = parameter("number", 1, min_value=1)
 
 
 class Derivatives(Node):

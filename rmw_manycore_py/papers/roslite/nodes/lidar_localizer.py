@@ -54,7 +54,7 @@ class LocalizerParameters:
     """Parameters of the node; without derivatives it computes all alone."""
 
     map_path: str = parameter("map", "map.npz")
-    derivatives: int = parameter("derivatives", 5, least=0)
+    derivatives: int = parameter("derivatives", 5, min_value=0)
     timeout_s: float = parameter("pass_timeout", 1.0, above=0.0)
 
 

@@ -21,8 +21,8 @@ from rmw_manycore_py.papers.roslite.messages import bytes_field, floats_field, p
 class MergeParameters:
     """Parameters of the node."""
 
-    searches: int = parameter("searches", 1, least=1)
-    derivatives: int = parameter("derivatives", 5, least=1)
+    searches: int = parameter("searches", 1, min_value=1)
+    derivatives: int = parameter("derivatives", 5, min_value=1)
 
 
 class RadiusMerge(Node):

@@ -33,9 +33,9 @@ KEPT_SCANS = 5
 class SearchParameters:
     """Parameters of the node: which share of a scan it searches, and its room for tiles."""
 
-    part: int = parameter("part", 0, least=0)
-    parts: int = parameter("parts", 1, least=1)
-    smem_bytes: int = parameter("smem_bytes", 1 << 20, least=1)
+    part: int = parameter("part", 0, min_value=0)
+    parts: int = parameter("parts", 1, min_value=1)
+    smem_bytes: int = parameter("smem_bytes", 1 << 20, min_value=1)
 
 
 class RadiusSearch(Node):

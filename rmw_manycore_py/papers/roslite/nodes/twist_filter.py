@@ -20,8 +20,8 @@ class TwistParameters:
     """Parameters of the node."""
 
     lateral_m_s2: float = parameter("lateral_accel_limit", 5.0, above=0.0)
-    gain_speed: float = parameter("lowpass_gain_linear_x", 0.0, least=0.0, most=1.0)
-    gain_yaw_rate: float = parameter("lowpass_gain_angular_z", 0.0, least=0.0, most=1.0)
+    gain_speed: float = parameter("lowpass_gain_linear_x", 0.0, min_value=0.0, max_value=1.0)
+    gain_yaw_rate: float = parameter("lowpass_gain_angular_z", 0.0, min_value=0.0, max_value=1.0)
 
 
 class TwistFilterNode(Node):

@@ -33,8 +33,8 @@ class VelocityParameters:
     """Parameters of the node."""
 
     range_m: float = parameter("stop_range", 1.3, above=0.0)
-    min_points: int = parameter("threshold_points", 10, least=1)
-    distance_m: float = parameter("stop_distance_obstacle", 10.0, least=0.0)
+    min_points: int = parameter("threshold_points", 10, min_value=1)
+    distance_m: float = parameter("stop_distance_obstacle", 10.0, min_value=0.0)
     deceleration_m_s2: float = parameter("deceleration_obstacle", 0.8, above=0.0)
     bottom_m: float = parameter("detection_height_bottom", -1.7)
     top_m: float = parameter("detection_height_top", 0.2)

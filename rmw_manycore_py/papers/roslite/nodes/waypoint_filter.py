@@ -21,7 +21,7 @@ PERIOD_S = 0.1
 class FilterParameters:
     """Parameters of the node."""
 
-    size: int = parameter("safety_waypoints_size", 100, least=2)
+    size: int = parameter("safety_waypoints_size", 100, min_value=2)
 
 
 class WaypointFilter(Node):

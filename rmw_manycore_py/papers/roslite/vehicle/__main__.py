@@ -42,8 +42,8 @@ class VehicleParameters:
     """Parameters of the node."""
 
     length_m: float = parameter("length", 330.0, above=0.0)
-    waypoints: int = parameter("waypoints", 1000, least=2)
-    scans: int = parameter("scans", 1000, least=1)
+    waypoints: int = parameter("waypoints", 1000, min_value=2)
+    scans: int = parameter("scans", 1000, min_value=1)
     drives: bool = parameter("drives", True)
     report: str = parameter("report", "drive.json")
 

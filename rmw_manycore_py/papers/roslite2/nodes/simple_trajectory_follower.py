@@ -37,14 +37,14 @@ class FollowerParameters:
     """Autoware's parameters first; then conditions for stopping, which Autoware's node lacks."""
 
     use_external_speed: bool = parameter("use_external_target_vel", False)
-    external_speed_m_s: float = parameter("external_target_vel", 0.0, least=0.0)
+    external_speed_m_s: float = parameter("external_target_vel", 0.0, min_value=0.0)
     lateral_m: float = parameter("lateral_deviation", 0.0)
 
     timeout_s: float = parameter("kinematics_timeout", 0.3, above=0.0)
     max_distance_m: float = parameter("max_distance", 3.0, above=0.0)
     max_stddev_m: float = parameter("max_position_stddev", 0.8, above=0.0)
     max_stddev_m_s: float = parameter("max_speed_stddev", 1.0, above=0.0)
-    doubt_s: float = parameter("max_speed_stddev_time", 0.5, least=0.0)
+    doubt_s: float = parameter("max_speed_stddev_time", 0.5, min_value=0.0)
 
 
 class SimpleTrajectoryFollower(Node):

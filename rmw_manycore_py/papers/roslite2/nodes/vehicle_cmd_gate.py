@@ -38,15 +38,15 @@ MRM_AT_WORK = (MrmState.MRM_OPERATING, MrmState.MRM_SUCCEEDED, MrmState.MRM_FAIL
 class GateParameters:
     """Autoware's parameters without its command filter: the interface limits the speed."""
 
-    update_rate_hz: float = parameter("update_rate", 10.0, above=0.0, most=1000.0)
+    update_rate_hz: float = parameter("update_rate", 10.0, above=0.0, max_value=1000.0)
     watches_system: bool = parameter("use_emergency_handling", False)
     watches_external: bool = parameter("check_external_emergency_heartbeat", True)
-    system_timeout_s: float = parameter("system_emergency_heartbeat_timeout", 0.5, least=0.0)
+    system_timeout_s: float = parameter("system_emergency_heartbeat_timeout", 0.5, min_value=0.0)
     external_timeout_s: float = parameter(
-        "external_emergency_stop_heartbeat_timeout", 0.5, least=0.0
+        "external_emergency_stop_heartbeat_timeout", 0.5, min_value=0.0
     )
-    stop_hold_m_s2: float = parameter("stop_hold_acceleration", -1.5, most=0.0)
-    emergency_m_s2: float = parameter("emergency_acceleration", -2.4, most=0.0)
+    stop_hold_m_s2: float = parameter("stop_hold_acceleration", -1.5, max_value=0.0)
+    emergency_m_s2: float = parameter("emergency_acceleration", -2.4, max_value=0.0)
 
 
 class VehicleCmdGate(Node):

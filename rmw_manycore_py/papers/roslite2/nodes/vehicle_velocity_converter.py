@@ -21,8 +21,8 @@ from rmw_manycore_py.papers.roslite2.laws.odometry import velocity_covariance
 class ConverterParameters:
     """Autoware's parameters."""
 
-    stddev_vx_m_s: float = parameter("velocity_stddev_xx", 0.2, least=0.0)
-    stddev_wz_rad_s: float = parameter("angular_velocity_stddev_zz", 0.1, least=0.0)
+    stddev_vx_m_s: float = parameter("velocity_stddev_xx", 0.2, min_value=0.0)
+    stddev_wz_rad_s: float = parameter("angular_velocity_stddev_zz", 0.1, min_value=0.0)
     frame: str = parameter("frame_id", "base_link")
     speed_scale: float = parameter("speed_scale_factor", 1.0, above=0.0)
 

@@ -43,7 +43,7 @@ class InterfaceParameters:
     """Parameters of tier4's adapter and of Autoware's vehicle information."""
 
     timeout_s: float = parameter("control_cmd_timeout_sec", 0.5, above=0.0)
-    rate_hz: float = parameter("loop_rate", 50.0, least=1.0, most=1000.0)
+    rate_hz: float = parameter("loop_rate", 50.0, min_value=1.0, max_value=1000.0)
     max_speed_m_s: float = parameter("vehicle_velocity_limit", MAX_SPEED_M_S, above=0.0)
     wheel_base_m: float = parameter("wheel_base", 0.45, above=0.0)
     tread_m: float = parameter("wheel_tread", 0.5, above=0.0)

@@ -52,7 +52,7 @@ def cached_alike(times: Times) -> Found:
     """M1, first half: with caches the memory does not matter."""
     found = [_in_one_place(times, place, True) for place in (IO_DDR, IO_SMEM, CC_SMEM)]
     ratio = max(found) / min(found)
-    return side(ratio, most=ALIKE), f"slowest / fastest {ratio:.2f} on one thread"
+    return side(ratio, max_value=ALIKE), f"slowest / fastest {ratio:.2f} on one thread"
 
 
 def linear_in_threads(times: Times) -> Found:
@@ -70,8 +70,8 @@ def linear_in_threads(times: Times) -> Found:
     if not found:
         raise KeyError("free cores")
     least, most = min(found, key=found.__getitem__), max(found, key=found.__getitem__)
-    low = side(found[least], least=LINEAR[0])
-    return low or side(found[most], most=LINEAR[1]), (
+    low = side(found[least], min_value=LINEAR[0])
+    return low or side(found[most], max_value=LINEAR[1]), (
         f"speed-up {found[least]:.2f} ({least}) to {found[most]:.2f} x threads ({most})"
     )
 
@@ -80,20 +80,20 @@ def uncached_ddr_fourfold(times: Times) -> Found:
     """M2: without a cache, DDR takes four times as long."""
     ratio = _in_one_place(times, IO_DDR, False) / _in_one_place(times, IO_DDR, True)
     return side(
-        ratio, least=FOURFOLD[0], most=FOURFOLD[1]
+        ratio, min_value=FOURFOLD[0], max_value=FOURFOLD[1]
     ), f"uncached / cached {ratio:.2f} in IO DDR"
 
 
 def cluster_smem_faster(times: Times) -> Found:
     """M2: without a cache, the SMEM of a cluster beats that of an I/O subsystem."""
     ratio = _in_one_place(times, IO_SMEM, False) / _in_one_place(times, CC_SMEM, False)
-    return side(ratio, least=FASTER), f"IO SMEM / CC SMEM {ratio:.2f}, uncached"
+    return side(ratio, min_value=FASTER), f"IO SMEM / CC SMEM {ratio:.2f}, uncached"
 
 
 def uncached_cluster_faster(times: Times) -> Found:
     """M2: in a cluster the small cache costs more than it saves."""
     ratio = _in_one_place(times, CC_SMEM, True) / _in_one_place(times, CC_SMEM, False)
-    return side(ratio, least=FASTER), f"cached / uncached {ratio:.2f} in CC SMEM"
+    return side(ratio, min_value=FASTER), f"cached / uncached {ratio:.2f} in CC SMEM"
 
 
 def constant_overhead(times: Times) -> Found:
@@ -104,7 +104,7 @@ def constant_overhead(times: Times) -> Found:
     found = [times.ms(Case(times.sizes[0], OFFLOAD, False, t)) for t in threads]
     overhead_ms, error = fit_overhead(threads, found)
     in_words = f"overhead {overhead_ms:.3f} ms, fit within {error:.0%}"
-    return side(overhead_ms, least=0) or side(error, most=NEAR_THE_FIT), in_words
+    return side(overhead_ms, min_value=0) or side(error, max_value=NEAR_THE_FIT), in_words
 
 
 def fit_overhead(threads: Sequence[int], ms: Sequence[float]) -> tuple[float, float]:
@@ -118,7 +118,7 @@ def fit_overhead(threads: Sequence[int], ms: Sequence[float]) -> tuple[float, fl
 def offload_beats_ddr(times: Times) -> Found:
     """M3, second half: four clusters beat the I/O cores, whose DDR is cached."""
     ratio = _advantage(times, times.sizes[0])
-    return side(ratio, least=FASTER), f"IO DDR cached / off-loaded {ratio:.2f}, 4 threads"
+    return side(ratio, min_value=FASTER), f"IO DDR cached / off-loaded {ratio:.2f}, 4 threads"
 
 
 def more_for_large(times: Times) -> Found:
@@ -126,7 +126,7 @@ def more_for_large(times: Times) -> Found:
     if len(times.sizes) < 2:
         raise KeyError("two sizes")
     small, large = (_advantage(times, n) for n in (times.sizes[0], times.sizes[-1]))
-    return side(large / small, least=FASTER), f"advantage {small:.2f} and {large:.2f}"
+    return side(large / small, min_value=FASTER), f"advantage {small:.2f} and {large:.2f}"
 
 
 def _advantage(times: Times, n: int) -> float:
@@ -136,7 +136,7 @@ def _advantage(times: Times, n: int) -> float:
 def overflow(times: Times) -> Found:
     """M5: tiles of C written to DDR at once overflow FIFOs, to SMEM they do not."""
     ddr, smem = times.lost(IO_DDR), times.lost(IO_SMEM)
-    return (1 if smem else side(ddr, least=1)), f"{ddr:g} lost to IO DDR, {smem:g} to IO SMEM"
+    return (1 if smem else side(ddr, min_value=1)), f"{ddr:g} lost to IO DDR, {smem:g} to IO SMEM"
 
 
 _LOADS = ("multiply_add_cycles", "line_bytes", "cluster_smem_cycles", "io_smem_cycles")

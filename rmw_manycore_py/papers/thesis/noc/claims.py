@@ -66,7 +66,7 @@ def linear(times: Times) -> Found:
         for size in between:
             on_line = start + (end - start) * (size - smallest) / (largest - smallest)
             worst = max(worst, _ratio(times.us(case, size), on_line))
-    return side(worst, most=LINEAR), f"off the line by at most x {worst:.2f}"
+    return side(worst, max_value=LINEAR), f"off the line by at most x {worst:.2f}"
 
 
 def routes_alike(times: Times) -> Found:
@@ -82,7 +82,7 @@ def routes_alike(times: Times) -> Found:
                 if max(found) / min(found) > worst:
                     worst = max(found) / min(found)
                     where = f" ({method}, {source}, {size_name(size)})"
-    return side(worst, most=ALIKE), f"slowest route / fastest at most {worst:.2f}{where}"
+    return side(worst, max_value=ALIKE), f"slowest route / fastest at most {worst:.2f}{where}"
 
 
 def uc_faster(times: Times) -> Found:
@@ -93,21 +93,23 @@ def uc_faster(times: Times) -> Found:
         for size in _large(times)
     ]
     return side(
-        min(ratios), least=ALIKE
+        min(ratios), min_value=ALIKE
     ), f"Tx / UC {min(ratios):.2f} to {max(ratios):.2f} from 10 KB"
 
 
 def tx_from_ddr_twice(times: Times) -> Found:
     """T4: Tx takes twice as long from DDR as from the SMEM of the same I/O subsystem."""
     ratio = _ddr_to_smem(times, "Tx", times.sizes[-1])
-    return side(ratio, least=TWICE[0], most=TWICE[1]), f"DDR / IO SMEM {ratio:.2f}, largest size"
+    return side(
+        ratio, min_value=TWICE[0], max_value=TWICE[1]
+    ), f"DDR / IO SMEM {ratio:.2f}, largest size"
 
 
 def uc_indifferent(times: Times) -> Found:
     """T5: with the UC it does not matter whether data comes from DDR or SMEM."""
     ratios = [_ddr_to_smem(times, "UC", size) for size in _large(times)]
     return side(
-        max(ratios), most=ALIKE
+        max(ratios), max_value=ALIKE
     ), f"DDR / IO SMEM {min(ratios):.2f} to {max(ratios):.2f} from 10 KB"
 
 
@@ -125,7 +127,7 @@ def between_clusters_faster(times: Times) -> Found:
         for size in _large(times)
     ]
     return side(
-        min(ratios), least=FASTER
+        min(ratios), min_value=FASTER
     ), f"IO-CC / CC-CC {min(ratios):.2f} to {max(ratios):.2f} from 10 KB"
 
 
@@ -133,7 +135,7 @@ def overflow(times: Times) -> Found:
     """T7: without flow control FIFOs overflow, with it they do not."""
     free, controlled = times.lost(NO_FLOW_CONTROL), times.lost(FLOW_CONTROL)
     found = f"{free:g} lost without flow control, {controlled:g} with credits"
-    return (1 if controlled else side(free, least=1)), found
+    return (1 if controlled else side(free, min_value=1)), found
 
 
 def _ratio(one: float, other: float) -> float:

@@ -131,7 +131,7 @@ def round_trip(times: ModelTimes) -> Found:
 
 
 def _near(ratio: float) -> Side:
-    return side(ratio, least=1 - WITHIN, most=1 + WITHIN)
+    return side(ratio, min_value=1 - WITHIN, max_value=1 + WITHIN)
 
 
 _UC = ("header_flits", "hop_cycles", "uc_start_cycles", "cluster_smem_cycles")

@@ -16,7 +16,9 @@ from rmw_manycore_py.papers.thesis.noc.cases import Case, Setting
 
 pytestmark = pytest.mark.unit
 
-MIDDLE: Claim[int] = Claim("L", "it is 4 to 6", lambda n: (side(n, least=4, most=6), str(n)))
+MIDDLE: Claim[int] = Claim(
+    "L", "it is 4 to 6", lambda n: (side(n, min_value=4, max_value=6), str(n))
+)
 
 
 @pytest.mark.parametrize(
