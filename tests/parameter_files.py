@@ -253,6 +253,14 @@ def compare_command_lines(context: Context, directory: Path, numbers: range) -> 
     return ""
 
 
+def print_comparison(directory: str, first: int, end: int) -> None:
+    """Compare files and command lines in this process, and print the differences."""
+    rclpy.init()
+    arguments = rclpy.get_default_context(), Path(directory), range(first, end)
+    announce(repr([compare_files(*arguments)[1], compare_command_lines(*arguments)]))
+    rclpy.shutdown()
+
+
 def _difference_of(
     context: Context, name: str, directory: Path, launched: LaunchedNode, own: dict[str, Any]
 ) -> str | None:

@@ -10,36 +10,25 @@ import ast
 from pathlib import Path
 
 import pytest
-import rclpy
 from comparing import FEW, MANY
 from parameter_files import (
     Generator,
-    compare_command_lines,
-    compare_files,
+    print_comparison,
     print_overrides,
     read_here,
     shown,
 )
-from support import IS_MANYCORE, peer_command
+from support import IS_MANYCORE, TIMEOUT_S, peer_command
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="manycore run is about rmw_manycore")
 
 NODES = MANY // 50
 
 
-@pytest.fixture
-def context(platform):
-    rclpy.init()
-    yield rclpy.get_default_context()
-    rclpy.shutdown()
-
-
-def test_files_are_read_as_by_a_node(context, tmp_path: Path) -> None:
-    assert compare_files(context, tmp_path, range(FEW, MANY))[1] == ""
-
-
-def test_command_lines_give_what_launch_gives(context, tmp_path: Path) -> None:
-    assert compare_command_lines(context, tmp_path, range(FEW, MANY)) == ""
+def test_inputs_are_read_as_by_a_node(start, tmp_path: Path) -> None:
+    compared = start(peer_command(print_comparison, str(tmp_path), FEW, MANY))
+    printed = compared.wait_for(r"^\[.*\]$", timeout_s=TIMEOUT_S + MANY / 10)
+    assert ast.literal_eval(printed[0]) == ["", ""]
 
 
 def test_files_are_read_as_by_nodes_that_are_started_with_them(start, tmp_path: Path) -> None:
