@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Fills the table of figures in docs/reference/benchmarks/scale_figures.md.
+"""Fills the table of figures in docs/reference/benchmarks/scale.md.
 
-    python scripts/scale_figures.py REPORT docs/reference/benchmarks/scale_figures.md
+    python scripts/scale_figures.py REPORT docs/reference/benchmarks/scale.md
 
-A row per goal, at the largest number of each curve. A goal that the report lacks has no figures.
+A row per goal, at the largest number of its curve, with the largest median of all placements and
+ways to wait. A goal that the report lacks has no figures.
 """
 
 from __future__ import annotations
@@ -23,21 +24,35 @@ from rmw_manycore_py.cli.bench.report import number
 BEGIN, END = "<!-- figures -->\n", "<!-- end of figures -->\n"
 HEAD = "| question | at | goal | rmw_manycore | Fast DDS |\n|---|---|---|---|---|\n"
 _PLACE = re.compile(r"(?P<curve>.*), (?P<at>\d+) (?P<axis>[a-z ]+)")
+_PARTY = re.compile(r".*manycore [\w ]+ \(\w+\)(, )?")
+
+Key = tuple[str, str, str]
 
 
 def table(results: list[dict[str, Any]]) -> str:
     """Return the rows, with the figures of these results."""
-    goals = {(goal.question, _parts(goal.contender)["curve"]): goal for goal in QUESTION.goals}
-    rows = [" | ".join(_row(goal, results)) for goal in goals.values()]
-    return HEAD + "".join(f"| {row} |\n" for row in rows)
+    largest = {(goal.question, _parts(goal.contender)["curve"]): goal for goal in QUESTION.goals}
+    rows: dict[Key, list[Goal]] = {}
+    for goal in largest.values():
+        rows.setdefault((goal.question, _at(goal), _goal_in_words(goal)), []).append(goal)
+    lines = (" | ".join((*key, *_figures(goals, results))) for key, goals in rows.items())
+    return HEAD + "".join(f"| {line} |\n" for line in lines)
 
 
-def _row(goal: Goal, results: list[dict[str, Any]]) -> tuple[str, str, str, str, str]:
-    asked = [row for row in results if row["question"] == goal.question]
-    own = [row for row in asked if row["contender"] == goal.contender]
-    at = goal.contender.replace("manycore ", "", 1)
-    figures = _median(own), _median(_rows_of_peer(goal, asked))
-    return (goal.question, at, _goal_in_words(goal), *figures)
+def _at(goal: Goal) -> str:
+    """Return the number and the variant of a goal's curve, without its placement."""
+    parts = _parts(goal.contender)
+    variant = _PARTY.sub("", parts["curve"], count=1)
+    return ", ".join(filter(None, (variant, f"{parts['at']} {parts['axis']}")))
+
+
+def _figures(goals: list[Goal], results: list[dict[str, Any]]) -> tuple[str, str]:
+    asked = [row for row in results if row["question"] == goals[0].question]
+    contenders = {goal.contender for goal in goals}
+    own = [row for row in asked if row["contender"] in contenders]
+    peers = [row for goal in goals for row in _rows_of_peer(goal, asked)]
+    at = int(_parts(goals[0].contender)["at"])
+    return _largest(own, at), _largest(peers, at)
 
 
 def _rows_of_peer(goal: Goal, asked: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -50,19 +65,25 @@ def _rows_of_peer(goal: Goal, asked: list[dict[str, Any]]) -> list[dict[str, Any
     return sorted(rows, key=lambda row: int(row["at"]))[-1:]
 
 
-def _median(rows: list[dict[str, Any]]) -> str:
-    return "; ".join(f"{number(row['median'])} {row['unit']} ({row['at']})" for row in rows)
+def _largest(rows: list[dict[str, Any]], at: int) -> str:
+    """Return the largest median, with the number of its curve where that is another one."""
+    if not rows:
+        return ""
+    row = max(rows, key=lambda row: float(row["median"]))
+    measured_at = "" if int(row["at"]) == at else f" ({row['at']})"
+    unit = "" if row["unit"] == "count" else f" {row['unit']}"
+    return f"{number(row['median'])}{unit}{measured_at}"
 
 
 def _goal_in_words(goal: Goal) -> str:
     if goal.kind == "better":
-        return "better than Fast DDS"
+        return "< Fast DDS"
     if goal.peer is None:
-        return f"at most {goal.factor:g}"
+        return f"≤ {goal.factor:g}"
     own, peer = _parts(goal.contender), _parts(goal.peer)
-    variant = peer["curve"].partition(", ")[2] or "with nothing beside"
-    other = f"at {peer['at']} {peer['axis']}" if own["at"] != peer["at"] else variant
-    return f"at most {goal.factor:g} times that {other}"
+    variant = _PARTY.sub("", peer["curve"], count=1) or "with nothing beside"
+    other = f"at {peer['at']}" if own["at"] != peer["at"] else variant
+    return f"≤ {goal.factor:g} x {other}"
 
 
 def _parts(contender: str) -> dict[str, str]:

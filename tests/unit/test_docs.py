@@ -122,7 +122,7 @@ def test_the_plot_shows_the_figures_of_the_table() -> None:
 
 def test_the_table_of_the_scale_bench_has_a_row_per_goal() -> None:
     """Update it with: python scripts/scale_figures.py REPORT PAGE."""
-    page = (ROOT / "docs/reference/benchmarks/scale_figures.md").read_text()
+    page = (ROOT / "docs/reference/benchmarks/scale.md").read_text()
     expected = script("scale_figures").filled(page, [])
     rows, wanted = (
         [line.split(" | ")[:3] for line in text.splitlines() if line.startswith("| ")]

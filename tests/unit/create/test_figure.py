@@ -23,7 +23,7 @@ def test_lines_by_hand_are_those_of_the_papers_formula() -> None:
 
 
 def test_the_papers_set_of_nodes_takes_fewer_lines_than_the_paper_says() -> None:
-    """Return the figures stated in docs/reference/benchmarks/reference_system_figures.md."""
+    """Return the figures stated in docs/reference/benchmarks/reference_system.md."""
     dot = dot_of(MAPFILES / "autoware_reference.yaml")
     assert (dot.nodes, dot.written_lines, dot.delta_loc) == (24, 76, 626)
     assert round(dot.reduction, 2) == 0.88 > PAPERS_REDUCTION
