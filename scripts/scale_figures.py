@@ -5,7 +5,7 @@
     python scripts/scale_figures.py REPORT docs/reference/benchmarks/scale.md
 
 A row per goal, at the largest number of its curve, with the largest median of all placements and
-ways to wait. A goal that the report lacks has no figures.
+ways to wait. A question is written once. A goal that the report lacks has no figures.
 """
 
 from __future__ import annotations
@@ -35,8 +35,12 @@ def table(results: list[dict[str, Any]]) -> str:
     rows: dict[Key, list[Goal]] = {}
     for goal in largest.values():
         rows.setdefault((goal.question, _at(goal), _goal_in_words(goal)), []).append(goal)
-    lines = (" | ".join((*key, *_figures(goals, results))) for key, goals in rows.items())
-    return HEAD + "".join(f"| {line} |\n" for line in lines)
+    lines, above = "", ""
+    for (question, *place), goals in rows.items():
+        shown = "" if question == above else question
+        above = question
+        lines += f"| {' | '.join((shown, *place, *_figures(goals, results)))} |\n"
+    return HEAD + lines
 
 
 def _at(goal: Goal) -> str:
