@@ -4,7 +4,7 @@
 A file in the working directory must not shadow a module: `manycore run` is started next to the
 user's files. So these programs never import from the working directory or their script's directory,
 and PYTHONPATH comes after the standard library and installed packages. While they load, SIGINT ends
-them without a traceback. Nodes keep the rules of Python. See docs/design/substitution_children.md.
+them without a traceback. Nodes keep the rules of Python. See docs/design/substitution.md.
 
 Imports only the start-up hook, os and sys until sys.path is set.
 """
