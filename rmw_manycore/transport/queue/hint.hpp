@@ -34,7 +34,7 @@ struct Hint {
       word & number_mask};
   }
   bool is_of(uint32_t slot, uint32_t full_incarnation) const noexcept {
-    return publisher == slot && incarnation == (full_incarnation & incarnation_mask);
+    return publisher == slot && ((incarnation ^ full_incarnation) & incarnation_mask) == 0;
   }
   /// The newest number with these low bits up to `latest`. A queued hint is less than one period
   /// (2^21) old, twice the largest depth, however long nothing was taken. If no number with these

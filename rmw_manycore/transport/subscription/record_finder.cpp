@@ -82,10 +82,11 @@ bool RecordFinder::take_request_to_resync() noexcept {
          header_.resync.exchange(0, std::memory_order_seq_cst) != 0;
 }
 
-/// Hints may be missing: discards the queued ones and scans all topic DSMs instead.
+/// Hints may be missing: discards the queued ones and scans all topic DSMs instead. The sources are
+/// renewed after that: a hint that was discarded may be the first one of its publisher.
 void RecordFinder::resync(std::optional<Hint> popped) {
-  sources_.renew();
   drain_queue(popped);
+  sources_.renew();
   found_.clear();
   bool some_finished = false;
   for (Source & source : sources_) {

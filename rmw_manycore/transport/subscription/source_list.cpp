@@ -14,6 +14,7 @@ void SourceList::renew() noexcept {
     }
   } catch (const std::bad_alloc &) {
     publishers_.forget_changes();  // the next call tries again
+    lacks_some_ = true;
   }
 }
 

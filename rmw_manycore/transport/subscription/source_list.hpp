@@ -37,7 +37,8 @@ private:
   SubscriptionHeader & header_;
   EndpointEntry & entry_;
   Peers publishers_;
-  bool lacks_some_ = false;  ///< whose cluster could not be mapped: their hints were passed over
+  bool lacks_some_ =
+    false;  ///< for want of memory, or of their cluster: their hints were passed over
   std::vector<Source> sources_;  ///< ordered by slot; a slot has one
 };
 
