@@ -12,16 +12,13 @@
 namespace manycore::closing {
 namespace {
 
-void begin_publisher(Registry & registry, EndpointEntry & entry, bool died) {
+void begin_publisher(Registry & registry, EndpointEntry & entry) {
   Cluster * const cluster = registry.map_cluster(entry.block.cluster());
   auto * const dsm = registry.map<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
     return;  // damaged
   }
   transfer::end(registry.clusters(), *cluster, *dsm);
-  if (died) {
-    dsm->phase.store(0, std::memory_order_seq_cst);  // a dead process follows no references
-  }
   orphans::give_seats_to_readers_of_history(registry, *cluster, entry, *dsm);
 }
 
@@ -67,7 +64,7 @@ void close(Registry & registry, uint32_t endpoint, bool died, std::vector<uint32
   }
   registry.map_cluster(entry.block.cluster());
   if (is_publisher) {
-    begin_publisher(registry, entry, died);
+    begin_publisher(registry, entry);
   }
   close_row(registry, endpoint, died);
   notify_peers(registry, entry);

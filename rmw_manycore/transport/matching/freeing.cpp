@@ -146,6 +146,13 @@ Progress take_up_head(EndpointEntry & entry, uint64_t bytes, BlockInHand & hand)
   return Progress::none_left;
 }
 
+/// Where the reference to its memory is damaged: the slot may be used again, so it leaves its
+/// chain.
+Progress give_up(Registry & registry, uint32_t endpoint) {
+  registry.unlink_endpoint(endpoint);
+  return Progress::none_left;
+}
+
 /// Makes the memory of a closed publisher unreachable, once no subscription wants or reads it.
 Progress detach_publisher(
   Registry & registry, uint32_t endpoint, const Cluster & cluster, TopicDsmHeader & dsm,
@@ -179,7 +186,7 @@ Progress free_publisher(
   Cluster * const cluster = registry.map_cluster(entry.block.cluster());
   auto * const dsm = registry.map<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
-    return Progress::none_left;
+    return give_up(registry, endpoint);
   }
   if (entry.slot.state.load() != SlotState::unreachable) {
     if (const Progress progress = detach_publisher(registry, endpoint, *cluster, *dsm, unwanted);
@@ -198,7 +205,7 @@ Progress free_subscription(Registry & registry, uint32_t endpoint, BlockInHand &
   Cluster * const cluster = registry.map_cluster(entry.block.cluster());
   auto * const header = registry.map<SubscriptionHeader>(entry.block);
   if (cluster == nullptr || header == nullptr) {
-    return Progress::none_left;
+    return give_up(registry, endpoint);
   }
   if (entry.slot.state.load() != SlotState::unreachable) {
     retire_room(registry, entry);

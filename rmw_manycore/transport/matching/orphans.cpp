@@ -46,8 +46,9 @@ Seat * seat_for(Cluster & cluster, TopicDsmHeader & dsm) {
 }
 
 /// Asks each reader that is owed something to look: hints of the last records may not have been
-/// pushed, or may have been displaced. Stores `orphan` last, so it is repeated if this process
-/// dies.
+/// pushed, or may have been displaced. Only then the phase of a publisher that was killed ends, as
+/// a reader takes what it does not know by then for lost. Stores `orphan` last, so all of it is
+/// repeated if this process dies.
 void tell_readers(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {
   for_each_owner(registry, cluster, dsm, [&](Seat & seat, EndpointEntry & subscription) {
     SubscriptionHeader * const header =
@@ -57,6 +58,7 @@ void tell_readers(Registry & registry, const Cluster & cluster, TopicDsmHeader &
       notify_watchers(registry, *header);
     }
   });
+  dsm.phase.store(0, std::memory_order_seq_cst);
   dsm.orphan.store(1, std::memory_order_seq_cst);
 }
 

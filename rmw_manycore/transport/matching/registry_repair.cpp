@@ -94,7 +94,11 @@ void Registry::repair() {
   }
   mark_blocks_in_hands();
   link_all_endpoints();
-  raise_all_changes();  // the dead owner may have changed a row, and not raised them
+  // The dead owner may have changed a row, and neither raised them nor woken its peers.
+  raise_all_changes();
+  for (uint32_t slot = 0; slot < processes_.high_water(); ++slot) {
+    notify_event_watchers(*this, slot);
+  }
 }
 
 /// A block that its endpoint still leads to was about to change hands: it stays with the endpoint.

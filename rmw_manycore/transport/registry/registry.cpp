@@ -282,7 +282,8 @@ void Registry::unlink_endpoint(uint32_t slot) noexcept {
     return;
   }
   const uint32_t next = entry.next_of_topic.load(chained);
-  link->store(next, chained);
+  // Release: a walk that follows it also sees the incarnation of the slot that it leads to.
+  link->store(next, std::memory_order_release);
   if (next < endpoints_.high_water()) {
     endpoints_[next].previous_of_topic = entry.previous_of_topic;
   }

@@ -148,7 +148,7 @@ Source::Claimed Source::claim(const Wanted & wanted, View & view) noexcept {
   meet();
   const uint64_t number = number_of(wanted);
   const bool is_stale = number == no_record || (wanted.is_from_hint && number <= noted_);
-  if (is_stale || (seat_ == nullptr && !reads_history_)) {
+  if (is_stale || !may_take()) {
     return {ClaimResult::not_ours, end_look()};
   }
   const ClaimResult result = look_at(number, view);
@@ -255,7 +255,7 @@ void Source::scan(
 void Source::scan_all(std::vector<Waiting> & out) noexcept {
   meet();
   const uint64_t last = this->last();
-  if (last > noted_ && (seat_ != nullptr || reads_history_)) {
+  if (last > noted_ && may_take()) {
     for (const GenerationEntry & generation : dsm_->generations) {
       scan(generation, arrived(), last, out);
     }
@@ -268,12 +268,16 @@ bool Source::list_waiting(std::vector<Waiting> & out) noexcept {
   if (!begin_look(Reading::header_only(slot_, incarnation_))) {
     return end_look();
   }
+  const bool was_finished = is_known_finished();
+  if (reads_history_) {
+    meet();  // the process that closed the publisher may have given the seat
+  }
   // Most sources have no new record: a subscription resyncs for each publisher that leaves.
   if (dsm_->last.load(std::memory_order_seq_cst) > noted_) {
     scan_all(out);
   }
   order(out, own_part);
-  const bool finished = is_finished();
+  const bool finished = is_finished() && !was_finished;
   return end_look() || finished;
 }
 
@@ -295,22 +299,23 @@ uint64_t Source::account_for(uint64_t last_sequence) noexcept {
 }
 
 /// True if the hints of all records published before this call have been pushed and popped, or
-/// displaced. A publisher pushes to its own cluster inside its phase, and no hint is left.
+/// displaced. A publisher pushes to its own cluster inside its phase, and no hint is left; nor is
+/// one missing that it could not push.
 bool Source::has_announced_all() const noexcept {
   return cluster_ == own_cluster_ && dsm_->phase.load(std::memory_order_seq_cst) % 2 == 0 &&
-         subscriber_queue::empty(*header_);
+         header_->resync.load(std::memory_order_seq_cst) == 0 && subscriber_queue::empty(*header_);
 }
 
 Source::Settled Source::settle() noexcept {
   if (!begin_look(Reading::header_only(slot_, incarnation_))) {
     return end_look() ? Settled::finished : Settled::yes;  // the process that frees counts
   }
+  const bool was_finished = is_known_finished();
   meet();
   if (seat_ == nullptr) {
     const bool is_waited_for = end_look();
     return is_waited_for ? Settled::finished : Settled::yes;
   }
-  const bool was_finished = is_finished();
   const LastPublished published = last_published();
   const uint64_t known = has_announced_all() ? published.number : noted_;
   const bool is_settled = published.exact && arrived().is_settled(published.number, known);
@@ -321,6 +326,17 @@ Source::Settled Source::settle() noexcept {
   }
   is_over = end_look() || is_over;
   return is_over ? Settled::finished : is_settled ? Settled::yes : Settled::no;
+}
+
+/// A reader of the history without a seat has not told what it has taken.
+bool Source::is_known_finished() const noexcept {
+  return is_finished() && (seat_ != nullptr || !reads_history_);
+}
+
+/// The history of a closed publisher is for those who were there: they were given seats.
+bool Source::may_take() const noexcept {
+  return seat_ != nullptr ||
+         (reads_history_ && row_->slot.state.load(std::memory_order_acquire) == SlotState::live);
 }
 
 /// What is owed is what the process that frees looks at.

@@ -129,6 +129,8 @@ private:
   uint64_t account_for(uint64_t last_sequence) noexcept;
   /// True if the publisher is gone and everything it left is taken.
   bool is_finished() const noexcept;
+  bool is_known_finished() const noexcept;
+  bool may_take() const noexcept;
 
   const EndpointEntry * row_;
   uint32_t slot_;
