@@ -224,7 +224,7 @@ struct RegistryHeader {
   /// adds its wake word to WakeWords::graph; the slot is removed when it is given back and when it
   /// is taken anew. Model: docs/model/waiting.pml.
   GraphWatchers graph_watchers;
-  ClosingEndpoints closing;           ///< endpoints in a state from closing on (derived)
+  ClosingEndpoints closing;           ///< endpoints for which is_closed() holds (derived)
   std::atomic<uint64_t> death_count;  ///< incremented after the entry in `deaths` is written
   Death deaths[kept_deaths];  ///< ring; the next death goes to index death_count mod kept_deaths
   TopicBucket topic_buckets[topic_bucket_count];

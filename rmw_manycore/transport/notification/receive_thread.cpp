@@ -61,7 +61,7 @@ void ReceiveThread::run(const ProcessesChanged & on_change) {
     const size_t bytes = cluster_.pipe().receive(batch_, sizeof batch_);
     const size_t count = bytes / sizeof(EmcosMessage);
     bool understood = bytes % sizeof(EmcosMessage) == 0;
-    for (size_t i = 0; i < count && understood; ++i) {
+    for (size_t i = 0; i < count && understood && !must_recover_; ++i) {
       understood = handle(batch_[i], on_change);
     }
     header.messages.store(

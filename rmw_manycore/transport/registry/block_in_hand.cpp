@@ -63,8 +63,9 @@ BlockInHand::~BlockInHand() {
   }
   try {
     empty(wait_ns_);
-  } catch (const Error &) {
-    // Another process holds the lock: the next user of the hand empties it, or the reaper.
+  } catch (const std::exception &) {
+    // Another process holds the lock, or a repair lacks memory: the next user of the hand empties
+    // it, or the reaper.
   }
 }
 

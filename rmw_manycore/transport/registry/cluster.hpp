@@ -40,7 +40,7 @@ struct PlatformPaths {
   std::string session_pipe(uint32_t id) const { return cluster(id) + ".sessions"; }
 };
 
-/// More than the small blocks that a few turns allocate.
+/// More than the small blocks that one hold of the registry lock allocates.
 constexpr uint64_t backed_ahead_bytes = 64 << 10;
 
 /// A cluster's SMEM and pipe, mapped into this process.

@@ -190,8 +190,9 @@ void ReaderList::grow_seats() {
   const Membership membership(registry_, registry_.endpoints()[dsm_.endpoint.load()].slot);
   hand.make(membership, {cluster_.id(), bytes, bytes, false});
   const Registry::Lock lock(registry_, Registry::Lock::WhileOwnersRun{});
-  note_free(table.grow(hand.block().offset()), bytes);
+  Seat & first = table.grow(hand.block().offset());
   hand.let_go();
+  note_free(first, bytes);
 }
 
 void ReaderList::note_free(Seat & first, uint64_t bytes) {
