@@ -14,8 +14,8 @@ namespace manycore {
 uint32_t new_endpoint(
   Registry & registry, const EndpointSpec & spec, EndpointKind kind, uint32_t process);
 
-/// Creates an endpoint of a process with its block, live and in the chain of its topic. `hand` has the block of a large queue,
-/// else nullptr. Takes the registry lock. Throws as new_endpoint(), and
+/// Creates an endpoint of a process with its block, live and in the chain of its topic. `hand` has
+/// the block of a large queue, else nullptr. Takes the registry lock. Throws as new_endpoint(), and
 /// Error{system} if the process is no member any more.
 uint32_t enter_graph(
   Registry & registry, const Membership & membership, const EndpointSpec & spec, EndpointKind kind,
