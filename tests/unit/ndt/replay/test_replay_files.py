@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from rmw_manycore_py import progress
 from rmw_manycore_py.cli.ndt.replay_files import ReplayFiles
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
 from rmw_manycore_py.ndt.recordings.pose_file import read_poses
 from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay.tally import Played, Tally
+from rmw_manycore_py.process import progress
 
 pytestmark = pytest.mark.unit
 
