@@ -333,7 +333,10 @@ std::unique_ptr<Publisher> Process::create_publisher(const EndpointSpec & spec) 
 }
 
 std::unique_ptr<Subscription> Process::create_subscription(const EndpointSpec & spec) {
-  return impl_->handle_of<Subscription>(impl_->add_endpoint(spec, EndpointKind::subscription));
+  auto subscription =
+    impl_->handle_of<Subscription>(impl_->add_endpoint(spec, EndpointKind::subscription));
+  subscription->arrivals();  // looks for a history: without one, nothing must seem to wait
+  return subscription;
 }
 
 bool Process::is_cut_off() const noexcept { return impl_->membership->is_cut_off(); }

@@ -76,6 +76,15 @@ TEST_CASE("the history of a publisher that closed before a subscription came is 
   CHECK(take_all(*stuck) == numbers(1, 2));
 }
 
+TEST_CASE("nothing waits for a new subscription to a history that is empty") {
+  Fixture f;
+  const auto publisher = f.publisher(transient_local(5));
+  const auto subscription = f.subscription(transient_local(5));
+  CHECK_FALSE(subscription->has_data());
+  publish(*publisher, 1);
+  CHECK(subscription->has_data());
+}
+
 TEST_CASE("an endpoint whose memory cannot be found leaves the chain of its topic") {
   Fixture f;
   auto damaged = f.publisher();
