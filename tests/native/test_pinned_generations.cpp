@@ -102,7 +102,7 @@ TEST_CASE("wherever a reader stops in a look or a claim, messages may grow") {
     }
     REQUIRE(stores < 100);
   }
-  CHECK(kept > 1);  // a scan, and more than one claim
+  CHECK(kept > 1);  // more than one claim
 }
 
 TEST_CASE("subscriptions that keep messages of each size are named, not the memory") {
