@@ -113,7 +113,8 @@ def test_damaged_files_are_cured(start, clean, talker, platform, name, damage: D
 
 
 def assert_cured(start, clean, platform: str) -> None:
-    assert clean(platform).lines
+    if (PLATFORMS / platform).exists():  # its members remove it once they miss a file
+        assert clean(platform).lines
     assert not (PLATFORMS / platform).exists()
     wait_until(lambda: not processes_of(platform), "receive threads have ended")
     again = start(forked_example("talker"))
