@@ -56,10 +56,10 @@ def absent(path: Path) -> None:
     path.unlink()
 
 
-LIFELINES = [overwritten, truncated, a_directory, absent]
+DAMAGES = [overwritten, truncated, a_directory, absent]
 OTHERS: list[tuple[str, Damage]] = [
-    *(("registry", damage) for damage in LIFELINES),
-    *(("cluster-1", damage) for damage in LIFELINES),
+    *(("registry", damage) for damage in DAMAGES),
+    *(("cluster-1", damage) for damage in DAMAGES),
     *(("cluster-1.pipe", damage) for damage in (truncated, a_directory, absent)),
 ]
 
@@ -92,15 +92,23 @@ def private_directory() -> Iterator[dict[str, str]]:
         yield {"MANYCORE_DIRECTORY": directory}
 
 
-@pytest.mark.parametrize("damage", LIFELINES, ids=named)
+@pytest.mark.parametrize("damage", [overwritten, truncated, a_directory], ids=named)
 def test_damaged_lifelines_are_cured(start, clean, talker, platform, damage: Damage) -> None:
     """The receive thread stays, as it cannot tell that its node has died: clean ends it."""
     damage(PLATFORMS / platform / "alive")
     talker.kill()
-    if damage is not absent:
-        refused = start(forked_example("talker"))
-        assert refused.wait() == 1
+    refused = start(forked_example("talker"))
+    assert refused.wait() == 1
     assert_cured(start, clean, platform)
+
+
+def test_a_receive_thread_that_misses_the_lifelines_removes_its_platform(
+    start, talker, platform
+) -> None:
+    absent(PLATFORMS / platform / "alive")
+    talker.kill()
+    wait_until(lambda: not (PLATFORMS / platform).exists(), "the platform is removed")
+    assert_gone(start, platform)
 
 
 @pytest.mark.parametrize(("name", "damage"), OTHERS, ids=named)
@@ -113,8 +121,11 @@ def test_damaged_files_are_cured(start, clean, talker, platform, name, damage: D
 
 
 def assert_cured(start, clean, platform: str) -> None:
-    if (PLATFORMS / platform).exists():  # its members remove it once they miss a file
-        assert clean(platform).lines
+    assert clean(platform).lines
+    assert_gone(start, platform)
+
+
+def assert_gone(start, platform: str) -> None:
     assert not (PLATFORMS / platform).exists()
     wait_until(lambda: not processes_of(platform), "receive threads have ended")
     again = start(forked_example("talker"))
