@@ -85,7 +85,7 @@ TEST_CASE("what does not fit is counted once") {
   CHECK(peers.counts().matched_total == 1);
 }
 
-TEST_CASE("a peer whose process was killed is told from one that left, until another one comes") {
+TEST_CASE("a peer whose process was killed counts as died, until another one comes") {
   Fixture f;
   const auto own = f.subscription();
   Peers peers = f.peers_of(own->gid());

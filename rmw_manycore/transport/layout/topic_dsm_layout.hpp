@@ -18,8 +18,8 @@ struct alignas(64) RecordDescriptor {
   uint64_t offset;               ///< of the CDR bytes, in the publisher's cluster segment
   uint32_t size_bytes;
   uint32_t reserved;
-  std::atomic<int64_t> source_timestamp_ns;  ///< atomic: sweepers read it without a claim
-  uint64_t publication_sequence_number;      ///< of replies: among those to the same client
+  int64_t source_timestamp_ns;           ///< CLOCK_REALTIME at publish
+  uint64_t publication_sequence_number;  ///< of replies: among those to the same client
   Correlation correlation;
 };
 static_assert(sizeof(RecordDescriptor) == 64);

@@ -25,7 +25,7 @@ struct EndpointTerms {
 /// How two endpoints go together.
 struct Fit {
   enum class Kind : uint8_t {
-    strangers,   ///< neither is told of the other
+    strangers,   ///< no event on either side
     other_type,  ///< counted as of incompatible type
     other_qos,   ///< counted as of incompatible QoS
     matched,

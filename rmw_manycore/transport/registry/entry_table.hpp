@@ -18,42 +18,20 @@ public:
   EntryTable(const Cluster & cluster, EntryBlocks & blocks) noexcept
   : cluster_(cluster), blocks_(blocks) {}
 
-  /// Calls `visit(Entry &, index)` for each entry from `from` on, used or free, until it returns
-  /// true.
+  /// Calls `visit(Entry &)` for each entry, used or free, until it returns true.
   template<typename Visit>
-  void visit(uint32_t from, Visit visit) const {
+  void visit(Visit visit) const {
     for (uint32_t block = 0; block < max_entry_blocks; ++block) {
       Entry * const entries = entries_of(block);
       if (entries == nullptr) {
         return;
       }
-      const uint32_t first = first_index(block);
-      for (uint32_t i = from > first ? from - first : 0; i < capacity(block); ++i) {
-        if (visit(entries[i], first + i)) {
+      for (uint32_t i = 0; i < capacity(block); ++i) {
+        if (visit(entries[i])) {
           return;
         }
       }
     }
-  }
-
-  /// Nullptr beyond the end of the table.
-  Entry * find(uint32_t index) const noexcept {
-    const uint32_t block = 31 - static_cast<uint32_t>(__builtin_clz(index / capacity(0) + 1));
-    Entry * const entries = block < max_entry_blocks ? entries_of(block) : nullptr;
-    return entries == nullptr ? nullptr : entries + (index - first_index(block));
-  }
-
-  std::optional<uint32_t> index_of(const Entry & entry) const noexcept {
-    for (uint32_t block = 0; block < max_entry_blocks; ++block) {
-      const Entry * const entries = entries_of(block);
-      if (entries == nullptr) {
-        return std::nullopt;
-      }
-      if (&entry >= entries && &entry < entries + capacity(block)) {
-        return first_index(block) + static_cast<uint32_t>(&entry - entries);
-      }
-    }
-    return std::nullopt;
   }
 
   struct Block {
@@ -119,7 +97,6 @@ private:
   uint32_t capacity(uint32_t block) const noexcept {
     return static_cast<uint32_t>(bytes_of(block) / sizeof(Entry));
   }
-  uint32_t first_index(uint32_t block) const noexcept { return ((1u << block) - 1) * capacity(0); }
   /// Nullptr if the block is not allocated.
   Entry * entries_of(uint32_t block) const noexcept {
     const uint64_t offset = blocks_.offsets[block].load(std::memory_order_acquire);

@@ -112,8 +112,7 @@ std::optional<Claim> Subscription::claim() {
     Claim claim(*this, std::move(lock), source, view.number);
     claim.data_ = view.data;
     claim.size_ = view.record->size_bytes;
-    claim.info_.source_timestamp_ns =
-      view.record->source_timestamp_ns.load(std::memory_order_relaxed);
+    claim.info_.source_timestamp_ns = view.record->source_timestamp_ns;
     claim.info_.received_timestamp_ns = realtime_ns();
     claim.info_.publication_sequence_number = view.record->publication_sequence_number;
     claim.info_.reception_sequence_number = impl.counts.count_taken(claim.size_);

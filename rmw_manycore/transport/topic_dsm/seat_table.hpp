@@ -20,7 +20,7 @@ void visit_seats(const Cluster & cluster, TopicDsmHeader & dsm, Visit visit) {
       return;
     }
   }
-  further_seats(cluster, dsm).visit(0, [&](Seat & seat, uint32_t) { return visit(seat); });
+  further_seats(cluster, dsm).visit(visit);
 }
 
 /// The seat of a subscription, or with `owner` = 0 a free one; nullptr if there is none.

@@ -130,8 +130,7 @@ bool Source::is_for_us(const RecordDescriptor & record) const noexcept {
 /// The shorter lifespan of publisher and subscription applies.
 bool Source::is_expired(const RecordDescriptor & record) const noexcept {
   const int64_t lifespan_ns = std::min(dsm_->lifespan_ns, subscription_->qos.lifespan_ns);
-  return lifespan_ns != infinite_ns &&
-         realtime_ns() - record.source_timestamp_ns.load(std::memory_order_relaxed) > lifespan_ns;
+  return lifespan_ns != infinite_ns && realtime_ns() - record.source_timestamp_ns > lifespan_ns;
 }
 
 /// A server counts the replies to all clients, so more than a period of them may follow one whose
@@ -246,8 +245,7 @@ void Source::scan(
     }
     header_->reading.store(Reading::of(hint_of(number)), std::memory_order_seq_cst);
     if (record.number.load(std::memory_order_seq_cst) == number && is_for_us(record)) {
-      out.push_back(
-        {record.source_timestamp_ns.load(std::memory_order_relaxed), number, slot_, incarnation_});
+      out.push_back({record.source_timestamp_ns, number, slot_, incarnation_});
     }
   }
 }

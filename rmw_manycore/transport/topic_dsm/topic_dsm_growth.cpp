@@ -37,8 +37,7 @@ bool TopicDsmWriter::drain(Generation & old) {
   return true;
 }
 
-/// Closes an old generation once it is drained. True when no reader accesses it any more. The
-/// registry lock is required to close it, because a sweeper that holds the lock may be reading it.
+/// Closes an old generation once it is drained. True when no reader accesses it any more.
 bool TopicDsmWriter::retire(Generation & old) {
   if (old.is_unread) {
     return true;
@@ -47,7 +46,6 @@ bool TopicDsmWriter::retire(Generation & old) {
     if (!drain(old)) {
       return false;
     }
-    const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
     // Dekker with the claim: the reader stores `reading` before it loads `first`. Rebuild the
     // reader list after the store, so that a reader that has just joined is checked as well.
     old.entry->first.store(0, std::memory_order_seq_cst);

@@ -113,9 +113,7 @@ bool TopicDsmWriter::wants(
 
 bool TopicDsmWriter::is_wanted(uint64_t number, const RecordDescriptor & record) const noexcept {
   const int64_t lifespan = endpoint_.qos.lifespan_ns;
-  if (
-    lifespan != infinite_ns &&
-    realtime_ns() - record.source_timestamp_ns.load(std::memory_order_relaxed) > lifespan) {
+  if (lifespan != infinite_ns && realtime_ns() - record.source_timestamp_ns > lifespan) {
     return false;
   }
   if (dsm_.transient_local != 0 && !is_of_replies() && is_among_last(dsm_.depth, record)) {
@@ -349,7 +347,7 @@ uint64_t TopicDsmWriter::commit(
   RecordDescriptor & record = current_.descriptor(next_number_);
   record.offset = current_.data_offset + block.begin;
   record.size_bytes = static_cast<uint32_t>(size_bytes);
-  record.source_timestamp_ns.store(source_timestamp_ns, std::memory_order_relaxed);
+  record.source_timestamp_ns = source_timestamp_ns;
   record.publication_sequence_number = publication_sequence_number;
   record.correlation = correlation;
   if (is_of_replies()) {

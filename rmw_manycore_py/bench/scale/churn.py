@@ -13,8 +13,8 @@ from functools import partial
 from rmw_manycore_py.bench.contenders import INSIDE
 from rmw_manycore_py.bench.load import awake
 from rmw_manycore_py.bench.question import Run
-from rmw_manycore_py.bench.round_trip import WARM_UP, in_us
-from rmw_manycore_py.bench.scale.common import along, at_count, on_curve
+from rmw_manycore_py.bench.round_trip import in_us
+from rmw_manycore_py.bench.scale.common import along, at_count, on_curve, round_trips_us
 from rmw_manycore_py.bench.session import TIMEOUT_S, Session
 from rmw_manycore_py.bench.summary import Goal, Result
 
@@ -48,27 +48,14 @@ def _beside(run: Run, count: int) -> list[Result]:
                 )
                 with closing(churn):
                     churn.wait_until_ready()
-                    found[ROUND_TRIP, place] += _round_trips_us(run, own)
+                    found[ROUND_TRIP, place] += round_trips_us(
+                        own, run.iterations(ROUND_TRIPS), pong=0
+                    )
                     found[CREATE, place] += _creations_us(run, own)
     return [
         on_curve(question, f"{INSIDE.name}{place}", count, "endpoints", "us", samples)
         for (question, place), samples in found.items()
     ]
-
-
-def _round_trips_us(run: Run, session: Session) -> list[float]:
-    ping = session.native(
-        "round_trip",
-        0,
-        role="ping",
-        bytes=64,
-        warm_up=WARM_UP,
-        iterations=run.iterations(ROUND_TRIPS),
-    )
-    pong = session.native("round_trip", 0, role="pong")
-    samples = in_us(ping.finish()["samples_ns"])
-    pong.finish()
-    return samples
 
 
 def _creations_us(run: Run, session: Session) -> list[float]:

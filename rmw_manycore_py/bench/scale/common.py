@@ -8,6 +8,8 @@ from dataclasses import replace
 
 from rmw_manycore_py.bench.contenders import Middleware, manycore
 from rmw_manycore_py.bench.question import Run
+from rmw_manycore_py.bench.round_trip import WARM_UP, in_us
+from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Curve, Result
 from rmw_manycore_py.errors import ManycoreError
 
@@ -21,6 +23,17 @@ def spread(middleware: Middleware, parties: int) -> Middleware:
     if not middleware.is_manycore:
         return middleware
     return replace(middleware, clusters=tuple(i % CLUSTERS + 1 for i in range(parties)))
+
+
+def round_trips_us(session: Session, iterations: int, *, pong: int) -> list[float]:
+    """Measure round trips of 64 B between party 0 and party `pong`."""
+    ping = session.native(
+        "round_trip", 0, role="ping", bytes=64, warm_up=WARM_UP, iterations=iterations
+    )
+    answering = session.native("round_trip", pong, role="pong")
+    samples = in_us(ping.finish()["samples_ns"])
+    answering.finish()
+    return samples
 
 
 def followed(middleware: Middleware, places: Sequence[int], most: int) -> Sequence[int]:

@@ -25,6 +25,7 @@ from rmw_manycore_py.bench.scale.common import (
     at_count,
     followed,
     on_curve,
+    round_trips_us,
     spread,
 )
 from rmw_manycore_py.bench.scale.fleet import MAX_PROCESSES, Fleet
@@ -187,7 +188,10 @@ def _messages(run: Run, session: Session, nodes: Fleet) -> list[Result]:
         for _ in range(TURNS):
             for beside, each, its_nodes in platforms:
                 found[PUBLISH, beside] += _publishes_us(run, each, its_nodes)
-                found[ROUND_TRIP, beside] += _round_trips_us(run, each)
+                # In one cluster, on both CPUs.
+                found[ROUND_TRIP, beside] += round_trips_us(
+                    each, run.iterations(ROUND_TRIPS), pong=CLUSTERS
+                )
     return [
         _found(session.middleware, nodes.count, question, "us", samples, beside)
         for (question, beside), samples in found.items()
@@ -204,22 +208,6 @@ def _publishes_us(run: Run, session: Session, nodes: Fleet) -> list[float]:
         iterations=run.iterations(PUBLISHED),
     )
     return in_us(speaker.finish()["samples_ns"])
-
-
-def _round_trips_us(run: Run, session: Session) -> list[float]:
-    ping = session.native(
-        "round_trip",
-        0,
-        role="ping",
-        bytes=64,
-        warm_up=WARM_UP,
-        iterations=run.iterations(ROUND_TRIPS),
-    )
-    # In the same cluster, on the other CPU.
-    pong = session.native("round_trip", CLUSTERS, role="pong")
-    samples = in_us(ping.finish()["samples_ns"])
-    pong.finish()
-    return samples
 
 
 def _reclaim_ms(platform: Platform, nodes: Fleet) -> float:
