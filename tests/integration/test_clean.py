@@ -106,8 +106,8 @@ def test_a_receive_thread_that_misses_the_lifelines_removes_its_platform(
     start, talker, platform
 ) -> None:
     absent(PLATFORMS / platform / "alive")
-    talker.kill()
     wait_until(lambda: not (PLATFORMS / platform).exists(), "the platform is removed")
+    talker.kill()
     assert_gone(start, platform)
 
 

@@ -117,6 +117,7 @@ def test_simulated_time_is_that_of_the_clock(start) -> None:
     pub = start(manycore_command("topic", "pub", "-s", *stamped, "{stamp: now}"))
     echo = start(manycore_command("topic", "echo", *stamped, "--field", "stamp.sec"))
     pub.wait_for(r"stamp=builtin_interfaces.msg.Time\(sec=0, nanosec=0\)")  # no /clock message yet
+    echo.wait_for("^5$")
     assert echo.stop() == 0
     assert pub.stop() == 0
 

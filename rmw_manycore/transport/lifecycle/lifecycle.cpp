@@ -257,8 +257,10 @@ bool is_in_use(Registry & registry) {
 
 bool remove_if_unused(Registry & registry) {
   const PlatformPaths & paths = registry.paths();
-  const bool is_other = exists(paths.alive()) && !registry.lifelines().is_file(paths.alive());
-  if (is_other || is_in_use(registry)) {
+  // Without lifelines no process can join: the other files are of no use to those that still run.
+  if (
+    exists(paths.alive()) &&
+    (!registry.lifelines().is_file(paths.alive()) || is_in_use(registry))) {
     return false;
   }
   remove_platform(paths);

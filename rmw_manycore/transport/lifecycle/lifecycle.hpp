@@ -36,9 +36,9 @@ bool is_alive(const PlatformPaths & paths);
 /// True if a process of the platform or its configurator lives.
 bool is_in_use(Registry & registry);
 
-/// Removes all files of a platform without processes, including those that a killed process left,
-/// but not those of a later platform of the same name. False if the platform is in use. The caller
-/// holds the join lock.
+/// Removes all files of a platform without processes or without lifelines, including those that a
+/// killed process left, but not those of a later platform of the same name. False if the platform
+/// is in use. The caller holds the join lock.
 bool remove_if_unused(Registry & registry);
 
 /// Ends the receive threads and removes all files; returns their paths. The caller holds the
