@@ -1,12 +1,15 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// A publisher whose process has no memory for the list of its readers: a message is refused, or
-// reaches all readers, and the publisher's phase ends.
+// A process has no memory for the list of a publisher's readers, or of a subscription's records: a
+// message is refused, or reaches all readers.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <future>
 #include <new>
+#include <vector>
 
 #include "messages.hpp"
 #include "platform/clock.hpp"
@@ -18,20 +21,20 @@ using namespace manycore;
 
 namespace {
 
-thread_local bool may_allocate = true;
+thread_local uint64_t allocations_left = UINT64_MAX;
 
-/// Lets allocations of this thread fail during its lifetime.
+/// Lets allocations of this thread fail during its lifetime, after some that succeed.
 class NoMemory {
 public:
-  NoMemory() { may_allocate = false; }
-  ~NoMemory() { may_allocate = true; }
+  explicit NoMemory(uint64_t after) { allocations_left = after; }
+  ~NoMemory() { allocations_left = UINT64_MAX; }
   NoMemory(const NoMemory &) = delete;
   NoMemory & operator=(const NoMemory &) = delete;
 };
 
 template<typename Act>
-bool lacks_memory(const Act & act) {
-  const NoMemory none;
+bool lacks_memory(const Act & act, uint64_t after = 0) {
+  const NoMemory none(after);
   try {
     act();
   } catch (const std::bad_alloc &) {
@@ -62,10 +65,11 @@ struct Fixture {
 
 // Not inlined: g++ would warn that free() gets memory of another allocation function.
 [[gnu::noinline]] void * operator new(size_t size) {
-  void * const memory = may_allocate ? std::malloc(size) : nullptr;
+  void * const memory = allocations_left != 0 ? std::malloc(size) : nullptr;
   if (memory == nullptr) {
     throw std::bad_alloc();
   }
+  allocations_left -= allocations_left != UINT64_MAX ? 1 : 0;
   return memory;
 }
 
@@ -116,4 +120,29 @@ TEST_CASE("RELIABLE + KEEP_ALL: memory that runs out while a publisher waits cos
   CHECK(refused.get());
   CHECK(take_all(*reader) == numbers(1, last));
   CHECK(reader->lost() == 0);
+}
+
+TEST_CASE("memory that runs out anywhere in a resync costs no message") {
+  constexpr uint64_t more_than_a_resync_makes = 20;
+  for (uint64_t allocations = 0; allocations <= more_than_a_resync_makes; ++allocations) {
+    CAPTURE(allocations);
+    Fixture f;
+    const auto second = f.publisher_on("/x");
+    publish(*f.publisher, 1);
+    publish(*second, 2);
+    publish(*f.publisher, 3);
+    f.inspection.header_of(*f.first).resync.store(1);
+    CHECK_FALSE(lacks_memory([&] { f.first->arrivals(); }, allocations));
+    const bool was_enough = !f.first->has_to_resync();
+    CHECK((allocations != 0 || !was_enough));
+    CHECK((allocations != more_than_a_resync_makes || was_enough));
+    if (!was_enough) {
+      CHECK(lacks_memory([&] { f.first->claim(); }));
+    }
+    CHECK(f.first->arrivals() == 3);
+    std::vector<uint64_t> taken = take_all(*f.first);
+    std::sort(taken.begin(), taken.end());  // a publisher that could not be listed comes later
+    CHECK(taken == numbers(1, 3));
+    CHECK(f.first->lost() == 0);
+  }
 }

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "transport/layout/seat.hpp"
+
 namespace manycore {
 
 /// What one process knows of publishers that may still push to a closed subscription: a publisher
@@ -16,18 +18,27 @@ public:
     if (phase % 2 == 0) {
       return true;
     }
-    uint64_t & seen = seen_[subscription].try_emplace(publisher, phase).first->second;
+    OfSubscription & own = seen_[slot_in(subscription)];
+    if (own.subscription != subscription) {
+      own = {subscription, {}};  // another process freed the slot's former owner
+    }
+    uint64_t & seen = own.phases.try_emplace(publisher, phase).first->second;
     if (phase != seen) {
       seen = was_out;
     }
     return seen == was_out;
   }
-  void forget(uint64_t subscription) noexcept { seen_.erase(subscription); }
+  void forget(uint64_t subscription) noexcept { seen_.erase(slot_in(subscription)); }
 
 private:
   static constexpr uint64_t was_out = UINT64_MAX - 1;  ///< even, so no phase that was noted
 
-  std::unordered_map<uint64_t, std::unordered_map<uint64_t, uint64_t>> seen_;
+  struct OfSubscription {
+    uint64_t subscription = 0;
+    std::unordered_map<uint64_t, uint64_t> phases;  ///< by publisher
+  };
+
+  std::unordered_map<uint32_t, OfSubscription> seen_;  ///< by slot, so that it does not grow
 };
 
 }  // namespace manycore

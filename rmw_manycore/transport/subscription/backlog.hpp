@@ -23,11 +23,10 @@ public:
     records_.insert(records_.end(), records.begin(), records.end());
     note_size();
   }
-  Source::Waiting pop_oldest() {
-    const Source::Waiting oldest = records_.front();
+  const Source::Waiting & oldest() const noexcept { return records_.front(); }
+  void pop_oldest() noexcept {
     records_.pop_front();
     note_size();
-    return oldest;
   }
 
 private:

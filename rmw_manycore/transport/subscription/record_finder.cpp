@@ -2,6 +2,7 @@
 #include "transport/subscription/record_finder.hpp"
 
 #include <algorithm>
+#include <new>
 
 #include "transport/registry/endpoint_blocks.hpp"
 
@@ -34,9 +35,33 @@ uint64_t RecordFinder::arrivals() const noexcept {
   return pushed + arrivals_by_resync_.load(std::memory_order_relaxed);
 }
 
+/// Where memory runs out, the next attempt finds what this one has not.
+template<typename Act>
+auto RecordFinder::resync_later_if_it_lacks_memory(const Act & act) {
+  try {
+    return act();
+  } catch (const std::bad_alloc &) {
+    header_.resync.store(1, std::memory_order_seq_cst);
+    cluster_.wake_reaper();  // some sources may be finished
+    throw;
+  }
+}
+
 std::optional<RecordFinder::Candidate> RecordFinder::next() {
+  return resync_later_if_it_lacks_memory([this] { return find_next(); });
+}
+
+void RecordFinder::resync_if_asked() {
+  if (take_request_to_resync()) {
+    resync_later_if_it_lacks_memory([this] { resync(); });
+  }
+}
+
+std::optional<RecordFinder::Candidate> RecordFinder::find_next() {
   while (true) {
-    resync_if_asked();
+    if (take_request_to_resync()) {
+      resync();
+    }
     if (header_.keep_all == 0 && !backlog_.empty() && waiting() > header_.depth) {
       resync();  // newer messages displace those in the backlog
     }
@@ -62,19 +87,14 @@ std::optional<RecordFinder::Candidate> RecordFinder::next() {
 
 std::optional<RecordFinder::Candidate> RecordFinder::next_of_backlog() {
   while (!backlog_.empty()) {
-    const Source::Waiting oldest = backlog_.pop_oldest();
+    const Source::Waiting oldest = backlog_.oldest();
     Source * const source = sources_.find(Hint{oldest.publisher, oldest.incarnation, 0});
+    backlog_.pop_oldest();
     if (source != nullptr && oldest.number > source->taken()) {
       return Candidate{source, {oldest.number, false}};
     }
   }
   return std::nullopt;
-}
-
-void RecordFinder::resync_if_asked() {
-  if (take_request_to_resync()) {
-    resync();
-  }
 }
 
 bool RecordFinder::take_request_to_resync() noexcept {
@@ -83,11 +103,11 @@ bool RecordFinder::take_request_to_resync() noexcept {
 }
 
 /// Hints may be missing: discards the queued ones and scans all topic DSMs instead. The sources are
-/// renewed after that: a hint that was discarded may be the first one of its publisher.
+/// renewed after that: a hint that was discarded may be the first one of its publisher. Where
+/// memory runs out, what was drained and found is kept for the next resync.
 void RecordFinder::resync(std::optional<Hint> popped) {
   drain_queue(popped);
   sources_.renew();
-  found_.clear();
   bool some_finished = false;
   for (Source & source : sources_) {
     some_finished = source.list_waiting(found_) || some_finished;
@@ -100,8 +120,11 @@ void RecordFinder::resync(std::optional<Hint> popped) {
   // of them finds fewer messages than arrivals, never more.
   const uint64_t announced = count_announced(found_);
   counts_.suspect_losses();
-  if (found_.size() > announced) {
-    arrivals_by_resync_.fetch_add(found_.size() - announced, std::memory_order_relaxed);
+  const uint64_t unannounced = found_.size() - announced;
+  found_.clear();
+  announced_.clear();
+  if (unannounced != 0) {
+    arrivals_by_resync_.fetch_add(unannounced, std::memory_order_relaxed);
     if (header_.note_arrival()) {  // a deadline just started
       notify_event_watchers(registry_, header_.process.load(std::memory_order_relaxed));
     }
@@ -116,11 +139,14 @@ void RecordFinder::resync(std::optional<Hint> popped) {
   }
 }
 
+/// Each hint has its place before it leaves the queue.
 void RecordFinder::drain_queue(std::optional<Hint> popped) {
-  announced_.clear();
+  announced_.emplace_back();
   for (; popped || (popped = subscriber_queue::pop(header_)); popped.reset()) {
-    announced_.push_back(popped->word());
+    announced_.back() = popped->word();
+    announced_.emplace_back();
   }
+  announced_.pop_back();
   std::sort(announced_.begin(), announced_.end());
   announced_.erase(std::unique(announced_.begin(), announced_.end()), announced_.end());
 }
@@ -138,10 +164,11 @@ uint64_t RecordFinder::count_announced(const std::vector<Source::Waiting> & foun
 bool RecordFinder::drop_beyond_depth() {
   bool some_finished = false;
   while (header_.keep_all == 0 && backlog_.size() > header_.depth) {
-    const Source::Waiting oldest = backlog_.pop_oldest();
+    const Source::Waiting oldest = backlog_.oldest();
     if (Source * const source = sources_.find(Hint{oldest.publisher, oldest.incarnation, 0})) {
       some_finished = source->skip(oldest.number) || some_finished;
     }
+    backlog_.pop_oldest();
   }
   return some_finished;
 }
@@ -150,7 +177,7 @@ void RecordFinder::settle() noexcept {
   if (!counts_.needs_settling()) {
     return;
   }
-  sources_.renew();  // one that is gone has nothing to settle
+  sources_.try_to_renew();  // one that is gone has nothing to settle
   // Load before the sources are checked: later displacements count next time.
   const uint64_t displaced = header_.displaced().hints;
   bool all = true;

@@ -28,7 +28,8 @@ public:
     Registry & registry, Cluster & cluster, SubscriptionHeader & header, EndpointEntry & entry,
     ReceptionCounts & counts) noexcept;
 
-  /// Next record to claim. The claim may find that it is gone.
+  /// Next record to claim. The claim may find that it is gone. Throws std::bad_alloc, and costs no
+  /// record then; so does resync_if_asked().
   std::optional<Candidate> next();
   void resync_if_asked();
   /// Accounts for messages lost after the last one taken from each source. Called when there is
@@ -44,6 +45,9 @@ public:
   uint64_t arrivals() const noexcept;
 
 private:
+  template<typename Act>
+  auto resync_later_if_it_lacks_memory(const Act & act);
+  std::optional<Candidate> find_next();
   std::optional<Candidate> next_of_backlog();
   /// Resets `resync`. True if it was set: the caller must then call resync().
   bool take_request_to_resync() noexcept;
@@ -59,8 +63,8 @@ private:
   SourceList sources_;
   Backlog backlog_;
   std::atomic<uint64_t> arrivals_by_resync_{0};  ///< records found without a hint
-  std::vector<Source::Waiting> found_;  ///< result of a resync; a member to reuse its memory
-  std::vector<uint64_t> announced_;     ///< words of the drained hints
+  std::vector<Source::Waiting> found_;           ///< by a resync, and not in the backlog yet
+  std::vector<uint64_t> announced_;              ///< words of the drained hints
 };
 
 }  // namespace manycore

@@ -7,7 +7,7 @@
 
 namespace manycore {
 
-void SourceList::renew() noexcept {
+void SourceList::renew() {
   try {
     if (publishers_.refresh()) {
       rebuild();
@@ -15,6 +15,14 @@ void SourceList::renew() noexcept {
   } catch (const std::bad_alloc &) {
     publishers_.forget_changes();  // the next call tries again
     lacks_some_ = true;
+    throw;
+  }
+}
+
+void SourceList::try_to_renew() noexcept {
+  try {
+    renew();
+  } catch (const std::bad_alloc &) {
   }
 }
 
@@ -43,7 +51,7 @@ void SourceList::rebuild() {
   sources_ = std::move(renewed);
 }
 
-Source * SourceList::find(const Hint & hint) noexcept {
+Source * SourceList::find(const Hint & hint) {
   if (Source * const known = find_known(hint)) {
     return known;
   }

@@ -18,11 +18,12 @@ public:
     entry_(entry),
     publishers_(registry, entry, Peers::Of::with_memory) {}
 
-  /// Updates the list if rows of the topic changed.
-  void renew() noexcept;
+  /// Updates the list if rows of the topic changed. Throws std::bad_alloc.
+  void renew();
+  void try_to_renew() noexcept;
   /// The source that a hint or a listed record names; looks at the rows if it is not known. Nullptr
-  /// if its topic DSM is gone.
-  Source * find(const Hint & hint) noexcept;
+  /// if its topic DSM is gone. Throws as renew() does.
+  Source * find(const Hint & hint);
 
   std::vector<Source>::iterator begin() noexcept { return sources_.begin(); }
   std::vector<Source>::iterator end() noexcept { return sources_.end(); }

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/subscription/subscription.hpp"
 
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -49,7 +50,13 @@ public:
   FinishedPublishers(const FinishedPublishers &) = delete;
   FinishedPublishers & operator=(const FinishedPublishers &) = delete;
 
-  void add(uint32_t slot) { slots_.push_back(slot); }
+  void add(uint32_t slot) noexcept {
+    try {
+      slots_.push_back(slot);
+    } catch (const std::bad_alloc &) {
+      impl_.cluster.wake_reaper();
+    }
+  }
 
 private:
   Subscription::Impl & impl_;
@@ -130,7 +137,11 @@ uint64_t Subscription::arrivals() const noexcept {
   if (impl.finder.has_to_resync()) {
     const std::lock_guard<HandoverMutex> lock(impl.mutex);
     const LossNotice losses(impl);
-    impl.finder.resync_if_asked();
+    try {
+      impl.finder.resync_if_asked();
+    } catch (const std::bad_alloc &) {
+      // A take tells of it, or does it.
+    }
   }
   return impl.finder.arrivals();
 }

@@ -229,7 +229,7 @@ uint64_t Source::last() const noexcept {
 /// while `reading` names it or a record in it.
 void Source::scan(
   const GenerationEntry & generation, const transfer::Arrived & arrived, uint64_t last,
-  std::vector<Waiting> & out) noexcept {
+  std::vector<Waiting> & out) {
   const uint64_t first = generation.first.load(std::memory_order_seq_cst);
   if (first == 0 || first > last) {
     return;
@@ -250,7 +250,7 @@ void Source::scan(
   }
 }
 
-void Source::scan_all(std::vector<Waiting> & out) noexcept {
+void Source::scan_all(std::vector<Waiting> & out) {
   meet();
   const uint64_t last = this->last();
   if (last > noted_ && may_take()) {
@@ -261,7 +261,7 @@ void Source::scan_all(std::vector<Waiting> & out) noexcept {
   }
 }
 
-bool Source::list_waiting(std::vector<Waiting> & out) noexcept {
+bool Source::list_waiting(std::vector<Waiting> & out) {
   const auto own_part = static_cast<ptrdiff_t>(out.size());
   if (!begin_look(Reading::header_only(slot_, incarnation_))) {
     return end_look();
@@ -272,7 +272,13 @@ bool Source::list_waiting(std::vector<Waiting> & out) noexcept {
   }
   // Most sources have no new record: a subscription resyncs for each publisher that leaves.
   if (dsm_->last.load(std::memory_order_seq_cst) > noted_) {
-    scan_all(out);
+    try {
+      scan_all(out);
+    } catch (const std::bad_alloc &) {
+      out.resize(static_cast<size_t>(own_part));  // none is noted: the next call lists them
+      end_look();
+      throw;
+    }
   }
   order(out, own_part);
   const bool finished = is_finished() && !was_finished;

@@ -71,7 +71,7 @@ public:
   };
   /// Step of a resync: appends the live records that were not noted to `out` in order, and notes
   /// them. True if the topic DSM may have been waiting for this look.
-  bool list_waiting(std::vector<Waiting> & out) noexcept;
+  bool list_waiting(std::vector<Waiting> & out);
 
   enum class Settled : uint8_t {
     no,  ///< a hint may still be on its way, or the topic DSM is being freed
@@ -119,10 +119,10 @@ private:
   /// Release without the end of the look. True if the publisher is gone, and owes nothing more.
   bool note_taken(uint64_t number) noexcept;
   /// Notes all records up to the newest one.
-  void scan_all(std::vector<Waiting> & out) noexcept;
+  void scan_all(std::vector<Waiting> & out);
   void scan(
     const GenerationEntry & generation, const transfer::Arrived & arrived, uint64_t last,
-    std::vector<Waiting> & out) noexcept;
+    std::vector<Waiting> & out);
   /// Counts messages up to this publication sequence number as lost, unless they are accounted for.
   void count_missing(uint64_t last_sequence) noexcept;
   /// Raises Seat::accounted; returns by how much.
