@@ -84,6 +84,7 @@ def test_builds_at_once_wait_for_each_other(start, env, sources, tmp_path) -> No
     assert imported("base_msgs.msg", env).returncode == 0
 
 
+@pytest.mark.stress  # compiles four packages
 def test_a_changed_package_is_built_again_with_those_that_contain_it(env, sources) -> None:
     write_definitions(sources, {**BASE, **USER})
     interface("build", sources, env=env)
@@ -104,6 +105,7 @@ def test_a_changed_package_is_built_again_with_those_that_contain_it(env, source
     assert "package 'user_msgs' was not built here; built: none" in gone.stderr
 
 
+@pytest.mark.stress  # compiles four packages
 def test_what_a_newer_package_elsewhere_outdates_is_built_again(
     env, sources, tmp_path, monkeypatch
 ) -> None:
