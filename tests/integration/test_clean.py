@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 import random
 import tempfile
@@ -47,9 +48,14 @@ def truncated(path: Path) -> None:
 
 
 def a_directory(path: Path) -> None:
-    path.unlink()
-    path.mkdir()
-    (path / "file").touch()
+    """Put a directory in the place of a file, which is never missing meanwhile."""
+    new = path.with_name("new")
+    new.mkdir()
+    (new / "file").touch()
+    exchange = 2  # RENAME_EXCHANGE
+    at = -100  # AT_FDCWD
+    assert ctypes.CDLL(None).renameat2(at, bytes(new), at, bytes(path), exchange) == 0
+    new.unlink()
 
 
 def absent(path: Path) -> None:
