@@ -61,7 +61,7 @@ bool end_if_unused(Registry & registry) {
   under_join_lock(registry.paths(), [&] {
     if (!registry.is_current()) {
       note_removal(registry);
-      remove_if_unused(registry);  // files left by a process that was killed meanwhile
+      remove_if_unused(registry);  // what is left of it, or a process killed meanwhile left
       ends = true;
     } else {
       ends = remove_if_unused(registry);

@@ -20,7 +20,7 @@ public:
     }
     OfSubscription & own = seen_[slot_in(subscription)];
     if (own.subscription != subscription) {
-      own = {subscription, {}};  // another process freed the slot's former owner
+      own = {subscription, {}};  // not that of a former owner, which another process freed
     }
     uint64_t & seen = own.phases.try_emplace(publisher, phase).first->second;
     if (phase != seen) {

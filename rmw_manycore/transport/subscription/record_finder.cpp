@@ -35,13 +35,15 @@ uint64_t RecordFinder::arrivals() const noexcept {
   return pushed + arrivals_by_resync_.load(std::memory_order_relaxed);
 }
 
-/// Where memory runs out, the next attempt finds what this one has not.
+/// Where memory runs out, the next attempt finds what this one has not. Other threads may have seen
+/// the queue drained.
 template<typename Act>
 auto RecordFinder::resync_later_if_it_lacks_memory(const Act & act) {
   try {
     return act();
   } catch (const std::bad_alloc &) {
     header_.resync.store(1, std::memory_order_seq_cst);
+    notify_watchers(registry_, header_);
     cluster_.wake_reaper();  // some sources may be finished
     throw;
   }

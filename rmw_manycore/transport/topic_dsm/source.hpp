@@ -70,7 +70,8 @@ public:
     uint32_t incarnation;  ///< of that slot
   };
   /// Step of a resync: appends the live records that were not noted to `out` in order, and notes
-  /// them. True if the topic DSM may have been waiting for this look.
+  /// them. True if the topic DSM may have been waiting for this look. Throws std::bad_alloc, and
+  /// appends and notes none then.
   bool list_waiting(std::vector<Waiting> & out);
 
   enum class Settled : uint8_t {
