@@ -1,6 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/notification/receive_thread.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <new>
 #include <utility>
 
@@ -115,7 +117,7 @@ const Peers * ReceiveThread::readers_of(const EmcosMessage & message) {
   if (message.endpoint >= registry_.endpoints().high_water()) {
     return nullptr;
   }
-  Publisher & known = publishers_[message.endpoint];
+  Publisher & known = publisher_in(message.endpoint);
   if (!known.readers || known.incarnation != message.incarnation) {
     const EntryCopy<EndpointEntry> row(registry_.endpoints(), message.endpoint);
     if (
@@ -128,6 +130,21 @@ const Peers * ReceiveThread::readers_of(const EmcosMessage & message) {
   }
   known.readers->refresh();
   return &*known.readers;
+}
+
+/// Publishers that left are forgotten whenever the number of known ones has doubled, so memory
+/// follows the number that is there, at a constant cost for each new one.
+ReceiveThread::Publisher & ReceiveThread::publisher_in(uint32_t slot) {
+  if (publishers_.size() >= max_publishers_) {
+    for (auto known = publishers_.begin(); known != publishers_.end();) {
+      const Slot & row = registry_.endpoints()[known->first].slot;
+      const bool is_there = has_memory(row.state.load(std::memory_order_acquire)) &&
+                            row.incarnation.load() == known->second.incarnation;
+      known = is_there ? std::next(known) : publishers_.erase(known);
+    }
+    max_publishers_ = std::max(2 * publishers_.size(), min_publishers);
+  }
+  return publishers_[slot];
 }
 
 void ReceiveThread::push(

@@ -31,6 +31,7 @@ public:
 
 private:
   static constexpr size_t batch_size = 64;
+  static constexpr size_t min_publishers = 64;
 
   /// False for an unknown message kind.
   bool handle(const EmcosMessage & message, const ProcessesChanged & on_change);
@@ -53,7 +54,11 @@ private:
     uint32_t incarnation = 0;
     std::optional<Peers> readers;
   };
+  /// May throw std::bad_alloc.
+  Publisher & publisher_in(uint32_t slot);
+
   std::unordered_map<uint32_t, Publisher> publishers_;  ///< by slot
+  size_t max_publishers_ = min_publishers;  ///< known ones at which those that left are forgotten
   bool must_recover_ = false;
 };
 

@@ -334,16 +334,6 @@ void Registry::walk_bucket(
   }
 }
 
-void Registry::for_each_of_bucket(
-  const char * topic, const std::function<void(uint32_t)> & visit) const {
-  uint32_t slot = bucket_of(hash_name(topic)).first.load(chained);
-  for (uint32_t i = 0; slot < endpoints_.high_water() && i < endpoint_capacity; ++i) {
-    const uint32_t next = endpoints_[slot].next_of_topic.load(chained);
-    visit(slot);
-    slot = next;
-  }
-}
-
 /// Looks at the processes that have watched the graph, not at all processes: most never do. See
 /// Waiters::watch_graph() for the order.
 void Registry::graph_changed() noexcept {

@@ -19,6 +19,9 @@
 
 namespace manycore {
 
+/// FNV-1a; equal for equal names in all processes.
+uint64_t hash_name(const char * name) noexcept;
+
 /// A table of slots in the registry. take(), publish() and give_back() require the registry lock;
 /// reads do not.
 template<typename Entry>
@@ -176,7 +179,15 @@ public:
   void unlink_endpoint(uint32_t slot) noexcept;
   /// Visits the slots in a topic's bucket, which other topics may share. Without the lock, a
   /// concurrent change may lead the walk to other buckets, but not out of the table.
-  void for_each_of_bucket(const char * topic, const std::function<void(uint32_t)> & visit) const;
+  template<typename Visit>
+  void for_each_of_bucket(const char * topic, Visit visit) const {
+    uint32_t slot = bucket_of(hash_name(topic)).first.load(std::memory_order_relaxed);
+    for (uint32_t i = 0; slot < endpoints_.high_water() && i < endpoint_capacity; ++i) {
+      const uint32_t next = endpoints_[slot].next_of_topic.load(std::memory_order_relaxed);
+      visit(slot);
+      slot = next;
+    }
+  }
 
   /// Calls `visit(slot, incarnation)` for each endpoint in the bucket of a topic, from the youngest
   /// on, until it returns false; other topics may share the bucket. Needs no lock. Endpoints that
@@ -225,9 +236,6 @@ private:
   std::mutex hand_mutex_;
   PhasesSeen phases_seen_;  ///< used under the lock
 };
-
-/// FNV-1a; equal for equal names in all processes.
-uint64_t hash_name(const char * name) noexcept;
 
 /// Copies a name into a fixed field. Throws Error{invalid_argument} if it is too long.
 void store_name(char (&field)[name_bytes], const std::string & name, const char * what);

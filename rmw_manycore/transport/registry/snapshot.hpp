@@ -13,14 +13,15 @@ namespace manycore {
 /// docs/design/rows_seats_hands.md.
 
 /// A copy of one table entry. It is consistent if the slot was live, with the same incarnation,
-/// before and after the copy.
+/// before and after the copy. The first loads are seq_cst: a caller may have made its phase odd
+/// before them (Dekker with the process that frees).
 template<typename Entry>
 class EntryCopy {
 public:
   EntryCopy(const Table<Entry> & table, uint32_t slot) noexcept
   : slot_(table[slot].slot),
-    incarnation_(slot_.incarnation.load(std::memory_order_acquire)),
-    state_(slot_.state.load(std::memory_order_acquire)) {
+    incarnation_(slot_.incarnation.load(std::memory_order_seq_cst)),
+    state_(slot_.state.load(std::memory_order_seq_cst)) {
     copy_words(&table[slot]);
   }
 
