@@ -18,12 +18,13 @@ endif()
 nanobind_build_library(nanobind-static)
 set_target_properties(nanobind-static PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
 
-# manycore_binding(NAME DIRECTORY LIBRARY [OPTION...]): module rmw_manycore_py.NAME over LIBRARY.
+# manycore_binding(NAME DIRECTORY LIBRARY [OPTION...]): module rmw_manycore_py.native.NAME over
+# LIBRARY.
 function(manycore_binding name directory library)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${directory}/*.cpp)
   nanobind_add_module(${name} NB_STATIC ${ARGN} ${sources})
   target_link_libraries(${name} PRIVATE ${library})
   set_target_properties(${name} PROPERTIES
-    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/rmw_manycore_py)
-  install(TARGETS ${name} DESTINATION ${MANYCORE_SITE_PACKAGES}/rmw_manycore_py)
+    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/rmw_manycore_py/native)
+  install(TARGETS ${name} DESTINATION ${MANYCORE_SITE_PACKAGES}/rmw_manycore_py/native)
 endfunction()

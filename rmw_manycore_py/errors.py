@@ -71,8 +71,8 @@ class DefinitionError(FileError):
 
 # By name: the native modules may be missing, and rclpy is loaded late.
 _REPORTED = {
-    "rmw_manycore_py._transport.PlatformError",
-    "rmw_manycore_py._ndt.NdtError",
+    "rmw_manycore_py.native._transport.PlatformError",
+    "rmw_manycore_py.native._ndt.NdtError",
     "rclpy._rclpy_pybind11.RCLError",
     "rclpy.exceptions.NameValidationException",
 }

@@ -7,7 +7,7 @@ import os
 from typing import get_args
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.words import WaitMode
+from rmw_manycore_py.native.enums import WaitMode
 
 MAX_CLUSTER = 64
 MAX_CORE = 1023

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.enums import LOSSES, EndpointKind, EndpointRole
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.ros.domain import checked_platform, default_platform
 from rmw_manycore_py.ros.names import full_node_name, node_names_by_process
-from rmw_manycore_py.words import LOSSES, EndpointKind, EndpointRole
 
 
 @dataclass(frozen=True)

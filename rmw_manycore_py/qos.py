@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, TypedDict
 
-from rmw_manycore_py.words import Durability, History, Liveliness, Reliability
+from rmw_manycore_py.native.enums import Durability, History, Liveliness, Reliability
 
 if TYPE_CHECKING:
-    from rmw_manycore_py._transport import Qos
+    from rmw_manycore_py.native._transport import Qos
 
 
 class Policies(TypedDict, total=False):

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from rmw_manycore_py.words import Transfer
+from rmw_manycore_py.native.enums import Transfer
 
 
 def transfer_text(transfer: Transfer, priority: int, synchronous: bool) -> str:

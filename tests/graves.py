@@ -47,7 +47,7 @@ class Graves:
         """Return the killed processes that still have a slot in the registry."""
         if not IS_MANYCORE:
             return []
-        from rmw_manycore_py._transport import Platform
+        from rmw_manycore_py.native._transport import Platform
 
         with Platform(self._platform) as platform:
             processes = platform.processes()

@@ -45,7 +45,7 @@ def has_receive_threads(platform: str) -> bool:
 
 def _deserted_clusters(platform: str) -> int:
     """Return how many clusters without a process have lost their receive thread."""
-    from rmw_manycore_py._transport import Platform, PlatformError
+    from rmw_manycore_py.native._transport import Platform, PlatformError
 
     try:
         with Platform(platform) as view:

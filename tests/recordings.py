@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.definitions import schema_of
 from rmw_manycore_py.recording.metadata import TopicRow
 from rmw_manycore_py.recording.output import Output

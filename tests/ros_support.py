@@ -88,7 +88,7 @@ def type_of(name: str) -> Any:
 
 def lost_messages(topic: str, role: str = "topic") -> int:
     """Return the table of lost messages, requests and responses that the tools print."""
-    from rmw_manycore_py import _transport
+    from rmw_manycore_py.native import _transport
 
     with _transport.Platform(os.environ["MANYCORE_PLATFORM"]) as platform:
         return sum(

@@ -18,7 +18,7 @@ def configure(kind: str, topics: list[str], clusters: int, synchronous: Sequence
 
     :param synchronous: those of `topics` that are published synchronously.
     """
-    from rmw_manycore_py import _transport
+    from rmw_manycore_py.native import _transport
 
     table = [
         _transport.TopicConfiguration(

@@ -14,7 +14,7 @@ from rclpy.qos import (
     ReliabilityPolicy,
 )
 
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.qos import Policies, policies_of
 
 # Minimum queue depth of the bridge, in messages; a larger depth of the other side raises it.

@@ -16,8 +16,8 @@ from rmw_manycore_bridge.loop import Mover
 from rmw_manycore_bridge.pending import Asked, Pending, empty_answer
 from rmw_manycore_bridge.policies import from_rclpy, replaced
 from rmw_manycore_bridge.sides import Sides
-from rmw_manycore_py import _transport
-from rmw_manycore_py.words import EndpointRole
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.enums import EndpointRole
 
 
 class Service(Mover):

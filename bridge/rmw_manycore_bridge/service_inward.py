@@ -13,7 +13,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 from rmw_manycore_bridge.service import Service
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_bridge.topic_inward import never_called
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 
 LINGER_S = 1.0  # destroying the service would discard replies in flight
 

@@ -13,7 +13,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 
 from rmw_manycore_bridge.service import Service
 from rmw_manycore_bridge.sides import Sides
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 
 # A server appears in the graph shortly before it is matched, which raises no event. Polling with
 # doubling intervals finds it early and rarely polls for a server that never matches.

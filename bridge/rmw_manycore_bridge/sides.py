@@ -10,7 +10,7 @@ from pathlib import Path
 from rmw_manycore_bridge.counters import CounterFile, Row
 from rmw_manycore_bridge.inside import Inside
 from rmw_manycore_bridge.outside import Outside
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.routes import Route
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from rmw_manycore_bridge.counters import FIELDS, CounterFile, is_locked
 from rmw_manycore_bridge.datagrams import receive_buffer_errors, socket_drops
 from rmw_manycore_bridge.lanes import LaneTable, name_of
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.routes import DIRECTIONS, Direction
 from rmw_manycore_py.topology import HostCpu, as_host_cpu
 

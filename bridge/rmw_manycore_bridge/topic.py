@@ -15,8 +15,8 @@ from rmw_manycore_bridge.limits import Limits
 from rmw_manycore_bridge.loop import Mover
 from rmw_manycore_bridge.place import SETTLE_S, STEP_S, Held, Place
 from rmw_manycore_bridge.sides import Sides
-from rmw_manycore_py import _transport
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native._transport import Qos
 
 BATCH = 16  # messages of one route before the next route's turn
 LINGER_S = 1.0  # the old owner keeps its publisher until subscribers have its messages

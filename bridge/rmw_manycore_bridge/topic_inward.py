@@ -23,8 +23,8 @@ from rmw_manycore_bridge.policies import (
 from rmw_manycore_bridge.rcl import RawReader
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_bridge.topic import BATCH, Topic
-from rmw_manycore_py import _transport
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native._transport import Qos
 
 
 class InwardTopic(Topic):

@@ -19,9 +19,9 @@ from typing import IO, Any
 
 from rmw_manycore_hook import plain_environment
 from rmw_manycore_program import own_program
-from rmw_manycore_py._transport import Platform, platform_directory
 from rmw_manycore_py.bench.contenders import Middleware, Peer
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native._transport import Platform, platform_directory
 from rmw_manycore_py.process.parent_death import dies_with_this_process
 
 # Total timeout of a process.

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.bench.contenders import INSIDE
 from rmw_manycore_py.bench.question import PAYLOADS, Question, Run
 from rmw_manycore_py.bench.round_trip import in_us
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.trace.events import EVENT, Endpoint, Kind, Process, Thread, Trace
 from rmw_manycore_py.trace.files import save
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import click
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.options import any_platform_option, examples, json_option
 from rmw_manycore_py.cli.common.printing import (
@@ -21,6 +20,7 @@ from rmw_manycore_py.cli.common.printing import (
 )
 from rmw_manycore_py.cli.common.rows import Row, cluster_row, platform_row, process_row
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.ros.names import node_names_by_process
 from rmw_manycore_py.transfers import transfer_text
 

@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from rmw_manycore_py._transport import PlatformError
+from rmw_manycore_py.native._transport import PlatformError
 from rmw_manycore_py.transport.errors import TransportError
 
 

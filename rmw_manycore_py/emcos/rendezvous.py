@@ -15,8 +15,8 @@ import socket
 import struct
 import time
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.emcos.waiting import wait_for_any
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.transport.arguments import Deadline
 from rmw_manycore_py.transport.errors import TransportError
 

@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.ros2_daemon import CURE, is_daemon
 from rmw_manycore_py.mapfile.placing.placement import Placement
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.topology import RECEIVE_THREAD_CORE, Core
 
 GROWS = 0  # size of a topic DSM that grows on demand

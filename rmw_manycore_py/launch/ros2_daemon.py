@@ -9,8 +9,8 @@ import signal
 from contextlib import suppress
 from pathlib import Path
 
-from rmw_manycore_py import _transport
-from rmw_manycore_py._transport import ProcessInfo
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native._transport import ProcessInfo
 
 CURE = "ros2 daemon stop"
 _NODE = "_ros2cli_daemon_"  # name defined in ros2cli/daemon/__init__.py

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from rmw_manycore_py import _transport
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.trace.files import save
 from rmw_manycore_py.trace.recorded import recorded
 

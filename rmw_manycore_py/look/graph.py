@@ -10,10 +10,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.enums import EndpointKind, EndpointRole
 from rmw_manycore_py.qos import Policies, policies_of
 from rmw_manycore_py.ros.names import full_node_name, node_names_by_process
-from rmw_manycore_py.words import EndpointKind, EndpointRole
 
 # Topics of every rclpy node; drawing them would clutter the picture.
 EVERY_NODES_TOPICS = frozenset(("/rosout", "/parameter_events"))

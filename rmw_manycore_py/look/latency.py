@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rmw_manycore_py import _transport
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.trace.events import (
     EndpointId,
     Events,

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.look.cpu_clocks import cpu_times_ns
 from rmw_manycore_py.look.graph import Graph
+from rmw_manycore_py.native import _transport
 
 Counts = NDArray[np.int64]
 

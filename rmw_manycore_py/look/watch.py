@@ -8,7 +8,6 @@ from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.look import events
 from rmw_manycore_py.look.events import Event
@@ -18,6 +17,7 @@ from rmw_manycore_py.look.loads import Loads
 from rmw_manycore_py.look.losses import Losses
 from rmw_manycore_py.look.sample import Sample, take_sample
 from rmw_manycore_py.look.workers import Workers
+from rmw_manycore_py.native import _transport
 
 # Window for rates, so that a topic of 1 Hz does not flicker at two looks a second.
 WINDOW_S = 2.0

@@ -11,8 +11,8 @@ from typing import Any
 
 import yaml
 
-from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.definitions import NO_SCHEMA, Schema
 from rmw_manycore_py.recording.offers import profiles_of
 from rmw_manycore_py.recording.plain_yaml import dump

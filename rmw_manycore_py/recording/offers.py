@@ -8,9 +8,9 @@ from typing import Any, cast
 
 import yaml
 
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native._transport import Qos
+from rmw_manycore_py.native.enums import Durability, History, Liveliness, Reliability
 from rmw_manycore_py.recording.plain_yaml import dump
-from rmw_manycore_py.words import Durability, History, Liveliness, Reliability
 
 _NS_PER_S = 1_000_000_000
 _INFINITE = {"sec": 9223372036, "nsec": 854775807}  # RMW_DURATION_INFINITE

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rmw_manycore_py._transport import NodeInfo
+    from rmw_manycore_py.native._transport import NodeInfo
 
 # Limits of rmw, same as in Fast DDS.
 MAX_TOPIC_NAME = 247

@@ -8,8 +8,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from rmw_manycore_py import _transport
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.trace.events import (
     EVENT,
     Endpoint,

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from rmw_manycore_py._transport import PlatformError
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.native._transport import PlatformError
 
 IN_USE = (
     "an array of the message is still in use: let go of it inside `with` (del, or work in a "

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import Self
 
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.transport.errors import IN_USE, MessageInUseError, TransportError
 from rmw_manycore_py.transport.multi_array import Scalar, layout_of
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.enums import Durability, History, Liveliness, Reliability
 from rmw_manycore_py.transport.arguments import checked_number
 from rmw_manycore_py.transport.errors import TransportError
-from rmw_manycore_py.words import Durability, History, Liveliness, Reliability
 
 MAX_DEPTH = 1 << 20
 _MAX_NS = (1 << 63) - 1

@@ -9,7 +9,7 @@ from typing import Generic
 import numpy as np
 from numpy.typing import NDArray
 
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.transport.arguments import Deadline
 from rmw_manycore_py.transport.closing import Closing
 from rmw_manycore_py.transport.errors import (

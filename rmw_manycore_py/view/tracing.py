@@ -7,8 +7,8 @@ import itertools
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rmw_manycore_py import _transport
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.errors import translate_native_errors
 
 if TYPE_CHECKING:
     from rmw_manycore_py.trace.latency import ChainLatency

@@ -12,7 +12,7 @@ import pytest
 from person import Person
 from support import IS_MANYCORE, environment, manycore_command, wait_until
 
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 
 pytestmark = [
     pytest.mark.integration,

@@ -15,7 +15,7 @@ from speakers import qos
 from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
 from rmw_manycore_bridge.counters import CounterFile, status_path
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.routes import DIRECTIONS
 
 pytestmark = [

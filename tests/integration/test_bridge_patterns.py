@@ -14,7 +14,7 @@ from speakers import hear, say
 from support import IS_MANYCORE, example_command, manycore_command, wait_until
 
 from rmw_manycore_bridge.status import status
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.routes import DIRECTIONS, Direction
 
 pytestmark = [

@@ -11,7 +11,7 @@ from bridging import Bridge
 from ros_support import announce, peer_node, spin_until, type_of
 from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 
 pytestmark = [
     pytest.mark.integration,

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 from support import IS_MANYCORE, leftovers
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import ManycoreError, MapfileError
 from rmw_manycore_py.extensions.foreign_launch import ForeignLaunch
+from rmw_manycore_py.native import _transport
 
 pytestmark = [
     pytest.mark.integration,

@@ -32,7 +32,7 @@ from support import (
     wait_until,
 )
 
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.trace.chains import Messages
 from rmw_manycore_py.trace.files import load
 from rmw_manycore_py.trace.latency import latencies

@@ -39,7 +39,7 @@ def first_process_of(namespace: int) -> int:
 
 def members(platform: str) -> set[int]:
     """Return the registry slots of a platform's members."""
-    from rmw_manycore_py._transport import Platform
+    from rmw_manycore_py.native._transport import Platform
 
     with Platform(platform) as seen:
         return {process.slot for process in seen.processes()}

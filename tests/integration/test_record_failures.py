@@ -12,8 +12,8 @@ from ros_support import peer_node, spin_until, type_of
 from speakers import hear
 from support import IS_MANYCORE, manycore_command, peer_command, wait_until
 
-from rmw_manycore_py._transport import Process, Qos
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
+from rmw_manycore_py.native._transport import Process, Qos
 from rmw_manycore_py.recording.output import Output
 from rmw_manycore_py.recording.recording import Recording
 

@@ -17,7 +17,7 @@ from bridging import Bridge
 from speakers import hear
 from support import IS_MANYCORE, Program, environment, wait_until
 
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 
 pytestmark = [
     pytest.mark.integration,

@@ -17,8 +17,8 @@ from support import (
     wait_until,
 )
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.mapfile import load_mapfile, resolve
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.papers.roslite.variants import (
     AFTER,
     LOCALIZER,

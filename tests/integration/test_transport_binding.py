@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import pytest
 from support import leftovers, wait_until
 
-from rmw_manycore_py._transport import (
+from rmw_manycore_py.native._transport import (
     Configurator,
     EndpointInfo,
     Platform,

@@ -17,7 +17,8 @@ from ros_support import announce, peer_node, spin_until
 from support import TIMEOUT_S, peer_command, wait_until
 
 import rmw_manycore_py as manycore
-from rmw_manycore_py import _transport, transport
+from rmw_manycore_py import transport
+from rmw_manycore_py.native import _transport
 
 pytestmark = pytest.mark.integration
 

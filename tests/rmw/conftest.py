@@ -71,7 +71,7 @@ def small_topic(start_peer: Callable[..., Program]) -> Iterator[str]:
 
 def configure(topic: str) -> None:
     """Configure a platform, in another process: rclpy's library would not see it in this one."""
-    from rmw_manycore_py import _transport
+    from rmw_manycore_py.native import _transport
 
     small = _transport.TopicConfiguration(topic, id=1, dsm_size_bytes=8192, receiver_clusters=0)
     with _transport.Configurator(

@@ -236,7 +236,7 @@ def test_a_server_and_a_client_go_on(node, start_peer, case):
 
 def send_nonsense(request: str, response: str) -> None:
     """Send a malformed request to the server, and a malformed response to its client."""
-    from rmw_manycore_py import _transport
+    from rmw_manycore_py.native import _transport
 
     data = {"request": bytes.fromhex(request), "reply": bytes.fromhex(response)}
     process = _transport.Process(os.environ["MANYCORE_PLATFORM"])

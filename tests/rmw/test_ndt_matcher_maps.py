@@ -27,7 +27,7 @@ from ros_support import spin_until
 from sensor_msgs.msg import PointCloud2
 from support import IS_MANYCORE
 
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, inverse, transform
 from rmw_manycore_py.ndt.maps.map_tiles import open_map, write_tiles
 from rmw_manycore_py.ndt.messages.conversions import nanoseconds

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from support import PLATFORMS
 
-from rmw_manycore_py._transport import Platform
+from rmw_manycore_py.native._transport import Platform
 
 BLOCK_BYTES = 512  # of st_blocks, see stat(2)
 

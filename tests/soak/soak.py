@@ -26,7 +26,7 @@ from running_time import RunningTime
 from steady_load import Load
 from support import Program, environment, leftovers, peer_command, unique_platform, wait_until
 
-from rmw_manycore_py._transport import Platform
+from rmw_manycore_py.native._transport import Platform
 from soak.actors import ACTORS, breed_actors, publish_bursts
 from soak.growth import Record, grown
 from soak.holdings import Holdings, look

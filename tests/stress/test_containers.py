@@ -16,7 +16,7 @@ pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS has no registr
 
 
 def endpoints_of(platform: str) -> int:
-    from rmw_manycore_py._transport import Platform
+    from rmw_manycore_py.native._transport import Platform
 
     with Platform(platform) as seen:
         return len(seen.endpoints())

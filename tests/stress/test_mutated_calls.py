@@ -136,7 +136,7 @@ class Target:
 
     def lost(self) -> int:
         """Return how many requests the service has dropped."""
-        from rmw_manycore_py import _transport
+        from rmw_manycore_py.native import _transport
 
         with _transport.Platform(self._platform) as platform:
             return sum(
@@ -151,7 +151,7 @@ class Target:
 
 
 def test_mutated_calls_are_taken_or_counted(seed, start, platform: str) -> None:
-    from rmw_manycore_py import _transport
+    from rmw_manycore_py.native import _transport
 
     peer = start(peer_command(serve))
     peer.wait_for("serves")

@@ -24,7 +24,7 @@ def small_topic(platform) -> Iterator[None]:
     if not IS_MANYCORE:
         yield
         return
-    from rmw_manycore_py._transport import Configurator, TopicConfiguration
+    from rmw_manycore_py.native._transport import Configurator, TopicConfiguration
 
     small = TopicConfiguration(
         f"/{TOPIC}", id=1, dsm_size_bytes=SMALL_DSM_BYTES, receiver_clusters=ALL_CLUSTERS

@@ -43,7 +43,7 @@ def nursery(load, start) -> Program:
 
 
 def used_bytes(platform: str) -> int:
-    from rmw_manycore_py._transport import Platform
+    from rmw_manycore_py.native._transport import Platform
 
     with Platform(platform) as view:
         return sum(cluster.used_bytes for cluster in view.clusters())

@@ -17,9 +17,9 @@ ROOTS = (REPOSITORY, REPOSITORY / "bridge", REPOSITORY / "startup")
 # Lowest first; packages of one layer do not see each other. A leading dot: in rmw_manycore_py.
 LAYERS = [
     ("rmw_manycore_hook", "rmw_manycore_interfaces", "rmw_manycore_receive"),
-    ("rmw_manycore_executor", "rmw_manycore_program", ".errors", ".examples", ".words"),
-    ("._transport", "._ndt"),
-    ("._ndt_bench", ".native_errors", ".qos", ".reference_system", ".transfers"),
+    ("rmw_manycore_executor", "rmw_manycore_program", ".errors", ".examples"),
+    (".native", ".reference_system"),
+    (".qos", ".transfers"),
     (".trace",),
     (".trace.files",),
     (".figures", ".process", ".ros"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.qos import Policies, policies_of
 
 pytestmark = pytest.mark.unit

@@ -72,7 +72,7 @@ std::string own_directory() {
 /// prefix.
 std::string receive_thread_program() {
   const std::string directory = own_directory();
-  for (const char * const place : {"/rmw_manycore/", "/", "/../", "/../../../rmw_manycore/"}) {
+  for (const char * const place : {"/rmw_manycore/", "/", "/../", "/../../../../rmw_manycore/"}) {
     const std::string candidate = directory + place + "manycore_receive_thread";
     if (access(candidate.c_str(), X_OK) == 0) {
       return candidate;

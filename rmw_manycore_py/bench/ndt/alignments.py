@@ -9,13 +9,13 @@ from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
-from rmw_manycore_py import _ndt_bench
 from rmw_manycore_py.bench.ndt.apart import Align, apart, matchers_apart
 from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, map_for, on_cpu, one_level, usable
 from rmw_manycore_py.bench.ndt.peers import PYTHON_PEERS, Peer, all_peers
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
 from rmw_manycore_py.bench.summary import Curve, Goal, Result
+from rmw_manycore_py.native import _ndt_bench
 from rmw_manycore_py.ndt import MatcherOptions, WorkerMatcher
 from rmw_manycore_py.ndt.geometry.arrays import scan_points
 from rmw_manycore_py.ndt.matching.kernel_options import match_options

@@ -7,10 +7,10 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from rmw_manycore_py import _ndt, _ndt_bench
+from rmw_manycore_py.native import _ndt, _ndt_bench
+from rmw_manycore_py.native.enums import Search, VoxelCovariance
 from rmw_manycore_py.ndt import MatcherOptions, VoxelMap
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
-from rmw_manycore_py.words import Search, VoxelCovariance
 
 SIMD_VARIABLE = "MANYCORE_NDT_SIMD"
 SIMDS = ("avx512", "avx2", "portable")

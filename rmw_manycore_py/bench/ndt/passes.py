@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rmw_manycore_py import _ndt_bench
 from rmw_manycore_py.bench.ndt.contenders import (
     VOXEL_SIZE_M,
     map_for,
@@ -18,8 +17,9 @@ from rmw_manycore_py.bench.ndt.peers import Peer, all_peers
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
+from rmw_manycore_py.native import _ndt_bench
+from rmw_manycore_py.native.enums import Search, VoxelCovariance
 from rmw_manycore_py.ndt import SerialMatcher
-from rmw_manycore_py.words import Search, VoxelCovariance
 
 PASSES = 20
 SCORE = "score, off the peer's"

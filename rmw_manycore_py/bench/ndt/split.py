@@ -7,11 +7,11 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-from rmw_manycore_py import _ndt_bench
 from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, map_for, on_cpu, one_level, usable
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
 from rmw_manycore_py.bench.summary import Curve, Goal, Result
+from rmw_manycore_py.native import _ndt_bench
 from rmw_manycore_py.ndt import MatcherOptions
 from rmw_manycore_py.ndt.geometry.arrays import scan_points
 from rmw_manycore_py.ndt.matching.kernel_options import match_options

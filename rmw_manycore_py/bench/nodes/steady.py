@@ -12,7 +12,7 @@ import struct
 import sys
 import time
 
-from rmw_manycore_py._transport import Process, Qos
+from rmw_manycore_py.native._transport import Process, Qos
 
 TYPE = "std_msgs/msg/UInt8MultiArray"
 _LOOK_S = 0.01

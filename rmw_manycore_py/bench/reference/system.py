@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import Literal
 
 from rmw_manycore_program import own_program
-from rmw_manycore_py._transport import Configurator, TopicConfiguration
 from rmw_manycore_py.bench.contenders import Middleware
 from rmw_manycore_py.bench.idle import cpu_ns
 from rmw_manycore_py.bench.reference.graph import Member
 from rmw_manycore_py.bench.reference.text import Loss, Report, losses_in, reports_in
 from rmw_manycore_py.bench.session import TIMEOUT_S, Process, Session, native_command
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native._transport import Configurator, TopicConfiguration
 from rmw_manycore_py.process.scheduling import scheduled_as
 
 Nodes = Literal["rcl", "rclpy"]

@@ -12,7 +12,6 @@ from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 
-from rmw_manycore_py._transport import Platform
 from rmw_manycore_py.bench.bridging import bridge_command
 from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, Middleware
 from rmw_manycore_py.bench.idle import cpu_ns
@@ -22,6 +21,7 @@ from rmw_manycore_py.bench.scale.common import OWN, along, at_count, followed, o
 from rmw_manycore_py.bench.session import TIMEOUT_S, Process, Session
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native._transport import Platform
 from rmw_manycore_py.routes import Route
 
 AGE = "age of the time that a node gets, at 1 kHz"

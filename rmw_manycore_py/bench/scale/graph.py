@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 from rmw_manycore_program import own_program
-from rmw_manycore_py._transport import Platform
 from rmw_manycore_py.bench.session import TIMEOUT_S, Session, pinned_to
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native._transport import Platform
 
 
 def read(platform: Platform) -> None:

@@ -11,7 +11,6 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from functools import partial
 
-from rmw_manycore_py._transport import Platform
 from rmw_manycore_py.bench.contenders import FAST_DDS, Middleware
 from rmw_manycore_py.bench.idle import cpu_ns, wait_until_quiet, wake_ups
 from rmw_manycore_py.bench.load import awake
@@ -32,6 +31,7 @@ from rmw_manycore_py.bench.scale.fleet import MAX_PROCESSES, Fleet
 from rmw_manycore_py.bench.session import TIMEOUT_S, Session
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native._transport import Platform
 
 UP = "starting all nodes, until each topic has its subscription"
 CREATE = "creating one more node"

@@ -12,11 +12,11 @@ from collections.abc import Callable, Iterable, Iterator
 import click
 from click.shell_completion import CompletionItem
 
-from rmw_manycore_py._transport import EndpointInfo
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.interface_types import types_of_kind
 from rmw_manycore_py.cli.common.rows import Row
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native._transport import EndpointInfo
 from rmw_manycore_py.ros import ament
 from rmw_manycore_py.ros.domain import default_platform
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.qos import policies_of
 
 Row = dict[str, Any]

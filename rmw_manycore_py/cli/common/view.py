@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from rmw_manycore_py import _transport
-from rmw_manycore_py._transport import EndpointInfo, NodeInfo, ProcessInfo
 from rmw_manycore_py.cli.common.rows import Row, counters_row
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native._transport import EndpointInfo, NodeInfo, ProcessInfo
+from rmw_manycore_py.native.enums import LOSSES
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.ros.names import full_node_name, is_hidden
-from rmw_manycore_py.words import LOSSES
 
 
 def platform_names() -> list[str]:

@@ -11,8 +11,8 @@ from rmw_manycore_py.cli.doctor.finding import Finding, advised
 def check_daemons() -> Iterator[Finding]:
     """Yield the daemons that alone keep platforms alive; none if that cannot be determined."""
     try:
-        from rmw_manycore_py import _transport
         from rmw_manycore_py.launch.ros2_daemon import CURE, lone_daemons
+        from rmw_manycore_py.native import _transport
     except ImportError:
         return
     try:

@@ -71,8 +71,8 @@ def _files() -> Iterator[Finding]:
         file = next((place for place in places if place.is_file()), None)
         found = str(file) if file else f"no {' and no '.join(map(str, places))}"
         yield judged(subject, file is not None, found, REINSTALL)
-    binding = importlib.util.find_spec("rmw_manycore_py._transport")
-    found = str(binding.origin) if binding else "no rmw_manycore_py._transport"
+    binding = importlib.util.find_spec("rmw_manycore_py.native._transport")
+    found = str(binding.origin) if binding else "no rmw_manycore_py.native._transport"
     yield judged("python binding", binding is not None, found, REINSTALL)
 
 

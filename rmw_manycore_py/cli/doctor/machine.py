@@ -129,7 +129,7 @@ def _futex() -> Finding:
 def _stale_platforms() -> Finding:
     subject = "platforms"
     try:
-        from rmw_manycore_py import _transport
+        from rmw_manycore_py.native import _transport
     except ImportError as error:
         return Finding(subject, Verdict.FAILURE, f"not checked: {error}")
     try:
@@ -145,7 +145,7 @@ def _stale_platforms() -> Finding:
 
 def is_alive(name: str) -> bool:
     """Return whether any process uses a platform; one that cannot be read counts as dead."""
-    from rmw_manycore_py import _transport
+    from rmw_manycore_py.native import _transport
 
     try:
         with _transport.Platform(name) as opened:

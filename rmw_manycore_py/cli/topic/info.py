@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py._transport import EndpointInfo, Qos
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.completion import complete_topics
 from rmw_manycore_py.cli.common.names import unknown
@@ -17,6 +16,7 @@ from rmw_manycore_py.cli.common.options import (
 )
 from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 from rmw_manycore_py.cli.common.rows import counters_row, endpoint_row
+from rmw_manycore_py.native._transport import EndpointInfo, Qos
 
 
 @click.command(

@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from rmw_manycore_py._transport import EndpointInfo
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.printing import echo, print_notices
@@ -15,6 +14,7 @@ from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native._transport import EndpointInfo
 from rmw_manycore_py.process.spinning import spin_once
 from rmw_manycore_py.qos import all_reliable, all_transient_local
 from rmw_manycore_py.ros.names import expand

@@ -7,11 +7,11 @@ import time
 
 import click
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
 from rmw_manycore_py.cli.common.printing import counted, echo, print_json
 from rmw_manycore_py.cli.common.view import require_platform
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.errors import translate_native_errors
 
 
 @click.command("status", epilog=examples("manycore trace status"))

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.view import require_platform
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.errors import translate_native_errors
 
 
 @click.command("stop", epilog=examples("manycore trace stop"))

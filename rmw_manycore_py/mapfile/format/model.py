@@ -32,11 +32,11 @@ from rmw_manycore_py.mapfile.format.values import (
     Size,
     refusal,
 )
+from rmw_manycore_py.native.enums import Transfer, WaitMode
 from rmw_manycore_py.process.scheduling import MAX_PRIORITY, MIN_PRIORITY, REAL_TIME
 from rmw_manycore_py.ros.domain import MAX_DOMAIN, PLATFORM_NAME
 from rmw_manycore_py.ros.names import MAX_NODE_NAME, MAX_TOPIC_NAME, NAME_PART
 from rmw_manycore_py.ros.patterns import is_pattern
-from rmw_manycore_py.words import Transfer, WaitMode
 
 # Receiver clusters are a 64-bit mask.
 MAX_CLUSTERS = 64

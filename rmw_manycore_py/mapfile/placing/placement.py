@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from rmw_manycore_py.mapfile.placing.parameters import GeneratedFile, Source, words_of
+from rmw_manycore_py.native.enums import Transfer
 from rmw_manycore_py.process.scheduling import Scheduling
 from rmw_manycore_py.ros.names import file_stem
 from rmw_manycore_py.routes import DIRECTIONS, Direction, Route
 from rmw_manycore_py.topology import Core, Topology
 from rmw_manycore_py.transfers import transfer_text
-from rmw_manycore_py.words import Transfer
 
 PARAMETERS = "parameters"  # directory of generated files, of a run and of `manycore create`
 

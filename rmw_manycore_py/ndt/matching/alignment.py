@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from rmw_manycore_py import _ndt
+from rmw_manycore_py.native import _ndt
+from rmw_manycore_py.native.enums import Outcome
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Matrix6, Pose, Poses
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
-from rmw_manycore_py.words import Outcome
 
 WHY: dict[Outcome, str] = {
     "converged": "",

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from rmw_manycore_py import _ndt
+from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 
 # Minimum thickness of coarse voxels relative to their size: a wall then attracts from farther than

@@ -11,9 +11,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _ndt
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.ndt.geometry.arrays import (
     Pose,
     ScanPoints,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from typing import Literal, get_args, get_type_hints
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.words import Search, StepRule, VoxelCovariance
+from rmw_manycore_py.native.enums import Search, StepRule, VoxelCovariance
 
 PoseCovariance = Literal["laplace", "fixed", "multi_ndt", "multi_ndt_score"]
 Offsets = tuple[tuple[float, float], ...]

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _ndt
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, map_points
 from rmw_manycore_py.ndt.matching.alignment import Score
 from rmw_manycore_py.ndt.matching.kernel_options import (

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _ndt
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.matcher import CANNOT_WORK, Matcher
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
@@ -94,7 +94,7 @@ class _Closed:
 def _worker_program() -> Path:
     # An installation has site-packages in <prefix>/lib/pythonX.Y, a build tree next to lib.
     here = Path(_ndt.__file__).resolve()
-    prefixes = [here.parents[4], here.parents[1], Path(sys.prefix)]
+    prefixes = [here.parents[5], here.parents[2], Path(sys.prefix)]
     for prefix in prefixes:
         program = prefix / "lib" / "rmw_manycore" / WORKER
         if program.exists():

@@ -14,7 +14,7 @@ from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapfile.format.document import read_yaml
 from rmw_manycore_py.mapfile.format.ros_lite import from_list
 from rmw_manycore_py.mapfile.installed import find_mapfile
-from rmw_manycore_py.words import Transfer
+from rmw_manycore_py.native.enums import Transfer
 
 AFTER, BEFORE = "ros_lite.map", "ros_lite_before.yaml"
 NODES = "rmw_manycore_py.papers.roslite.nodes"

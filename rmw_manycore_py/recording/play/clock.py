@@ -7,7 +7,7 @@ import struct
 import threading
 
 from rmw_manycore_bridge import types
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.play.position import Position
 from rmw_manycore_py.recording.play.program import CLOCK_TOPIC
 from rmw_manycore_py.recording.play.stage import RawPublisher, Stage

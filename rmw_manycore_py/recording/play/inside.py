@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import os
 
-from rmw_manycore_py import _transport
-from rmw_manycore_py._transport import Qos
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native._transport import Qos
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.own_place import own_cluster
 from rmw_manycore_py.recording.play.stage import RawPublisher
 

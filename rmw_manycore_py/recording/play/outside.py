@@ -12,7 +12,7 @@ from rclpy.event_handler import PublisherEventCallbacks
 from rmw_manycore_bridge import types
 from rmw_manycore_bridge.outside import Outside as Domain
 from rmw_manycore_bridge.policies import to_rclpy
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.play.stage import RawPublisher
 from rmw_manycore_py.recording.type_hash import type_hash_of
 from rmw_manycore_py.ros.domain import ros_domain

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.metadata import TopicRow
 from rmw_manycore_py.recording.recording import Recording
 from rmw_manycore_py.recording.selection import Selection

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native._transport import Qos
 
 
 class RawPublisher(Protocol):

@@ -13,7 +13,7 @@ from rmw_manycore_bridge import types
 from rmw_manycore_bridge.outside import Outside as Domain
 from rmw_manycore_bridge.policies import from_rclpy, to_rclpy
 from rmw_manycore_bridge.rcl import RawReader
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.record.side import BATCH, Heard, Offer, RawSubscription
 from rmw_manycore_py.recording.type_hash import type_hash_of
 from rmw_manycore_py.ros.domain import ros_domain

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native._transport import Qos
 
 # Messages taken of one topic before the next topic's turn.
 BATCH = 64

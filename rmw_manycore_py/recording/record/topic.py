@@ -6,7 +6,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.qos import all_reliable, all_transient_local
 from rmw_manycore_py.recording.metadata import TopicRow
 from rmw_manycore_py.recording.record.side import Offer, RawSubscription, Side

@@ -8,8 +8,8 @@ import os
 import numpy as np
 import pytest
 
-from rmw_manycore_py import _ndt, _ndt_bench
 from rmw_manycore_py.bench.ndt import passes
+from rmw_manycore_py.native import _ndt, _ndt_bench
 from rmw_manycore_py.ndt import MatcherOptions
 from rmw_manycore_py.ndt.geometry.arrays import map_points, scan_points
 from rmw_manycore_py.ndt.matching.kernel_options import coarse_options, map_options, match_options

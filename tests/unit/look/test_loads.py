@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.look.events import deaths
 from rmw_manycore_py.look.graph import Endpoint, Graph, Member
 from rmw_manycore_py.look.loads import Loads, TopicLoad
 from rmw_manycore_py.look.losses import Losses
 from rmw_manycore_py.look.sample import Sample, aligned
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.picture.marks import topic_text
 from rmw_manycore_py.qos import policies_of
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.look.graph import Endpoint, Graph, Member
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.picture.arcs import MAX_PAIRS, arcs_of
 from rmw_manycore_py.picture.drawing import draw
 from rmw_manycore_py.picture.geometry import Rect

@@ -7,7 +7,7 @@ import pytest
 import yaml
 from rosbags.rosbag2.metadata import parse_qos
 
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.offers import offers_in, profiles_text
 
 pytestmark = [pytest.mark.unit, pytest.mark.needs("rosbags")]

@@ -15,8 +15,8 @@ from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.writer import CompressionType, IndexType, Writer
 from recordings import START_NS, STRING, string_row, text_in, text_message, write_texts
 
-from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.metadata import write_metadata
 from rmw_manycore_py.recording.output import Output
 from rmw_manycore_py.recording.recording import Recording

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.ros.domain import checked_platform, default_platform, is_elsewhere, ros_domain
 
 pytestmark = pytest.mark.unit

@@ -58,7 +58,7 @@ void bind_profiler(nb::module_ & module) {
 NB_MODULE(_ndt_bench, module) {
   using namespace manycore::ndt;
   module.doc() = "What only benches of the scan matcher use.";
-  nb::module_::import_("rmw_manycore_py._ndt");
+  nb::module_::import_("rmw_manycore_py.native._ndt");
   python::bind_profiler(module);
   python::bind_matcher<ThreadMatcher>(module, "ThreadMatcher")
     .def(

@@ -10,7 +10,7 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.utilities import get_rmw_implementation_identifier
 
-from rmw_manycore_py import _transport
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.ndt.matching.matcher import Matcher
 from rmw_manycore_py.ros.domain import default_platform
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from rmw_manycore_py.native.enums import Behaviour, Search, StepRule, VoxelCovariance
 from rmw_manycore_py.ndt.nodes.support.declared import parameter
-from rmw_manycore_py.words import Behaviour, Search, StepRule, VoxelCovariance
 
 TRANSFORM_PROBABILITY, NEAREST_VOXEL_LIKELIHOOD = 0, 1
 FIXED_VALUE, LAPLACE_APPROXIMATION, MULTI_NDT, MULTI_NDT_SCORE = range(4)

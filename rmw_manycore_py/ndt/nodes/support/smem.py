@@ -6,8 +6,8 @@ from __future__ import annotations
 from rclpy.node import Node
 from rclpy.utilities import get_rmw_implementation_identifier
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.ros.domain import default_platform
 
 

@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.bench.question import Run
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.papers.roslite.bench.drives import drive
 from rmw_manycore_py.papers.roslite.bench.elf import Sizes, loaded_files, sizes_of
 from rmw_manycore_py.papers.roslite.variants import AFTER, installed

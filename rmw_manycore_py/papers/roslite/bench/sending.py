@@ -7,17 +7,17 @@ import time
 from collections import defaultdict
 from collections.abc import Mapping
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.bench.question import Run
 from rmw_manycore_py.bench.summary import Result
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.enums import Transfer
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.papers.roslite.bench.drives import drive
 from rmw_manycore_py.papers.roslite.variants import AFTER, installed, with_transfer
 from rmw_manycore_py.trace.chains import Messages
 from rmw_manycore_py.trace.events import Kind, RecordId, Trace, endpoint_in
 from rmw_manycore_py.trace.recorded import looked_at
-from rmw_manycore_py.words import Transfer
 
 TRANSFERS: tuple[Transfer, ...] = ("dsm", "message", "session", "async")
 # What lane_rule sends is latched, and a transferred topic has no history.

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rmw_manycore_py import _ndt
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _ndt
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.options import MatcherOptions

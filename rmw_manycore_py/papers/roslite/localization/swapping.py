@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.native import _ndt
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.papers.roslite.localization.tiles import TileKey
 
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from rclpy.node import Node
 from sensor_msgs.msg import PointCloud2
 
-from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.messages.conversions import nanoseconds
 from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode

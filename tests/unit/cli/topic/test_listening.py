@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.topic.listening import offered_policies, type_of_topic
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.words import Durability, Reliability
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.enums import Durability, Reliability
 
 pytestmark = pytest.mark.unit
 

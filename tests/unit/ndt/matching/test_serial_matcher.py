@@ -11,8 +11,8 @@ import pytest
 from ndt_world import errors, pose, scan_at, street
 
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native.enums import Search, StepRule, VoxelCovariance
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
-from rmw_manycore_py.words import Search, StepRule, VoxelCovariance
 
 pytestmark = pytest.mark.unit
 
@@ -140,7 +140,7 @@ def test_a_map_of_nothing_is_refused(points: Any) -> None:
 
 
 def test_errors_are_the_matchers_own_beside_the_transport() -> None:
-    importlib.import_module("rmw_manycore_py._transport")
+    importlib.import_module("rmw_manycore_py.native._transport")
     with pytest.raises(ManycoreError, match="no finite point"):
         VoxelMap.from_points(np.zeros((0, 3)))
 

@@ -11,9 +11,9 @@ import threading
 import numpy as np
 import pytest
 
-from rmw_manycore_py import _ndt
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
 from rmw_manycore_py.ndt.matching.kernel_options import map_options, match_options
 from rmw_manycore_py.papers.roslite.localization.alignment import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.play.program import offer_of
 from rmw_manycore_py.recording.record.topic import request_for
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from rmw_manycore_py import _ndt, _transport
 from rmw_manycore_py.errors import EXIT_FAILURE, ManycoreError, what_is_wrong
+from rmw_manycore_py.native import _ndt, _transport
 
 
 @contextmanager

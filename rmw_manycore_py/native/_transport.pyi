@@ -6,7 +6,7 @@ from types import TracebackType
 
 from typing_extensions import Buffer, Self
 
-from rmw_manycore_py.words import (
+from rmw_manycore_py.native.enums import (
     Durability,
     EndpointKind,
     EndpointRole,

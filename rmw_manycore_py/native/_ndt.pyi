@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from rmw_manycore_py.words import Outcome, Search, StepRule, VoxelCovariance
+from rmw_manycore_py.native.enums import Outcome, Search, StepRule, VoxelCovariance
 
 class NdtError(RuntimeError):
     """Something is wrong with a map, a host CPU or the workers; the message says what."""

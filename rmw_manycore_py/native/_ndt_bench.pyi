@@ -4,7 +4,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from rmw_manycore_py._ndt import Derivatives, MatchOptions, NewtonResult, VoxelMap
+from rmw_manycore_py.native._ndt import Derivatives, MatchOptions, NewtonResult, VoxelMap
 
 class Profile:
     """Where the time of an alignment goes."""
