@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rmw_manycore_py.errors import FileError, ManycoreError, MapfileError, Problem
     from rmw_manycore_py.launch.active_run import ActiveRun, NodeStatus, run
     from rmw_manycore_py.mapfile import Mapfile, PlacedNode, Placement, load_mapfile, resolve
-    from rmw_manycore_py.platform_status import (
+    from rmw_manycore_py.platform.status import (
         ClusterStatus,
         EndpointStatus,
         PlatformStatus,
@@ -59,7 +59,7 @@ _MODULES = {
     "errors": ("FileError", "ManycoreError", "MapfileError", "Problem"),
     "launch.active_run": ("ActiveRun", "NodeStatus", "run"),
     "mapfile": ("Mapfile", "PlacedNode", "Placement", "load_mapfile", "resolve"),
-    "platform_status": (
+    "platform.status": (
         *("ClusterStatus", "EndpointStatus", "PlatformStatus", "ProcessStatus"),
         *("platforms", "status"),
     ),

@@ -12,8 +12,8 @@ from forked import forked_node
 from support import Program, peer_command
 
 from rmw_manycore_bridge.status import status
-from rmw_manycore_py.bridge_plan import Plan
-from rmw_manycore_py.routes import DIRECTIONS, Direction, Route, arranged
+from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import DIRECTIONS, Direction, Route, arranged
 
 OUTSIDE = {"RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}
 STRING = "std_msgs/msg/String"

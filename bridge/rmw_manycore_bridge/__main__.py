@@ -7,8 +7,8 @@ import signal
 import sys
 
 from rmw_manycore_bridge.time_slice import shorten_time_slice
-from rmw_manycore_py.bridge_plan import Plan
-from rmw_manycore_py.routes import DIRECTIONS
+from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import DIRECTIONS
 
 
 def main(arguments: list[str]) -> int:

@@ -30,7 +30,13 @@ from rmw_manycore_py.mapfile.format.values import ActionType, MessageType, Servi
 from rmw_manycore_py.mapfile.placing.crossings import overrides
 from rmw_manycore_py.ros.names import expand
 from rmw_manycore_py.ros.patterns import is_pattern
-from rmw_manycore_py.routes import REQUEST_TIMEOUT_S, Direction, Route, action_routes, arranged
+from rmw_manycore_py.routes.route import (
+    REQUEST_TIMEOUT_S,
+    Direction,
+    Route,
+    action_routes,
+    arranged,
+)
 
 _KINDS = ("topics", "services", "actions")
 

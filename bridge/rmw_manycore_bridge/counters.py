@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from rmw_manycore_py.native import _transport
-from rmw_manycore_py.routes import Route
+from rmw_manycore_py.routes.route import Route
 
 _MAGIC = b"MCBRIDG2"
 _HEADER_BYTES = 24  # magic, process id, bytes of the routes' JSON

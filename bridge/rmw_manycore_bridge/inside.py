@@ -7,10 +7,10 @@ from collections.abc import Callable
 from typing import Protocol
 
 from rmw_manycore_bridge.loop import Loop
-from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native._transport import EndpointInfo
 from rmw_manycore_py.native.enums import EndpointKind, EndpointRole
+from rmw_manycore_py.routes.plan import Plan
 
 NODE_PREFIX = "_manycore_bridge_"  # hidden node name
 

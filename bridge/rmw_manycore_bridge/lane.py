@@ -11,8 +11,8 @@ from rmw_manycore_bridge.balance import Balance, Load, Move
 from rmw_manycore_bridge.lanes import LaneTable
 from rmw_manycore_bridge.place import Place
 from rmw_manycore_bridge.status import topic_loads
-from rmw_manycore_py.bridge_plan import Plan
-from rmw_manycore_py.routes import Direction
+from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import Direction
 
 PERIOD_S = 0.1  # polling period of the lane table
 BALANCE_S = 2.0  # polling period of the loads

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from rmw_manycore_py.native import _transport
-from rmw_manycore_py.routes import Direction, Route
+from rmw_manycore_py.routes.route import Direction, Route
 
 
 @dataclass

@@ -7,7 +7,7 @@ import time
 from collections.abc import Mapping
 
 from rmw_manycore_bridge.counters import Row
-from rmw_manycore_py.routes import Route
+from rmw_manycore_py.routes.route import Route
 
 _NS_PER_S = 1_000_000_000
 

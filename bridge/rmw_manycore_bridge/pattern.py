@@ -17,9 +17,9 @@ from rmw_manycore_bridge.counters import (
 )
 from rmw_manycore_bridge.loop import Mover
 from rmw_manycore_bridge.sides import Sides
-from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.ros.patterns import matches
-from rmw_manycore_py.routes import Route
+from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import Route
 
 MAX_TOPICS = 512  # per pattern; each costs a file and endpoints on both sides
 

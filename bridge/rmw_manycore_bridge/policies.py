@@ -15,7 +15,7 @@ from rclpy.qos import (
 )
 
 from rmw_manycore_py.native._transport import Qos
-from rmw_manycore_py.qos import Policies, policies_of
+from rmw_manycore_py.ros.qos import Policies, policies_of
 
 # Minimum queue depth of the bridge, in messages; a larger depth of the other side raises it.
 MIN_DEPTH = 10

@@ -27,10 +27,10 @@ from rmw_manycore_bridge.sides import OwnPublishers, Sides
 from rmw_manycore_bridge.topic_inward import InwardTopic
 from rmw_manycore_bridge.topic_outward import OutwardTopic
 from rmw_manycore_bridge.transports import NOTICE, avoid_shared_memory
-from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.process.readiness import report_ready
 from rmw_manycore_py.process.signals import signal_inbox
-from rmw_manycore_py.routes import Direction
+from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import Direction
 
 _NO_NETWORK = "no network interface is up: nothing is bridged; run 'ip link set lo up' and restart"
 

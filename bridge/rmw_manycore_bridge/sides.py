@@ -11,7 +11,7 @@ from rmw_manycore_bridge.counters import CounterFile, Row
 from rmw_manycore_bridge.inside import Inside
 from rmw_manycore_bridge.outside import Outside
 from rmw_manycore_py.native import _transport
-from rmw_manycore_py.routes import Route
+from rmw_manycore_py.routes.route import Route
 
 
 class OwnPublishers:

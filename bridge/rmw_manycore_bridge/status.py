@@ -12,8 +12,8 @@ from rmw_manycore_bridge.counters import FIELDS, CounterFile, is_locked
 from rmw_manycore_bridge.datagrams import receive_buffer_errors, socket_drops
 from rmw_manycore_bridge.lanes import LaneTable, name_of
 from rmw_manycore_py.native import _transport
-from rmw_manycore_py.routes import DIRECTIONS, Direction
-from rmw_manycore_py.topology import HostCpu, as_host_cpu
+from rmw_manycore_py.platform.topology import HostCpu, as_host_cpu
+from rmw_manycore_py.routes.route import DIRECTIONS, Direction
 
 _OF_OWNER = ("state", "latched", "latency_max_ns")
 _INTERNAL = ("latency_ns", "load_ppm", "window_ns", "window_busy_ns")

@@ -19,7 +19,7 @@ from rmw_manycore_py.bench.rclpy_round_trip import WARM_UP, iterations
 from rmw_manycore_py.bench.round_trip import in_us
 from rmw_manycore_py.bench.session import Process, Session
 from rmw_manycore_py.bench.summary import Goal, Result
-from rmw_manycore_py.routes import DIRECTIONS, Direction, Route
+from rmw_manycore_py.routes.route import DIRECTIONS, Direction, Route
 
 SIZES = ("64 B", "1 MiB")
 INWARD, OUTWARD = "bridged inward", "bridged outward"

@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rmw_manycore_py.bench.session import Session
-from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.launch.bridge import bridge_program
-from rmw_manycore_py.routes import Direction, Route, arranged
-from rmw_manycore_py.topology import Core
+from rmw_manycore_py.platform.topology import Core
+from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import Direction, Route, arranged
 
 
 def bridge_command(

@@ -15,7 +15,7 @@ from rmw_manycore_py.bench.load import busy
 from rmw_manycore_py.bench.question import Run
 from rmw_manycore_py.bench.session import NODES, TIMEOUT_S, Session
 from rmw_manycore_py.bench.summary import Goal, Result
-from rmw_manycore_py.routes import Route
+from rmw_manycore_py.routes.route import Route
 
 NAME = "images of 1 MiB at 30 Hz that reach another host"
 BRIDGED = "bridged"

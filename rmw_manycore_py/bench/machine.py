@@ -8,7 +8,7 @@ import platform
 from importlib import metadata
 from pathlib import Path
 
-from rmw_manycore_py.topology import shared_memory_place
+from rmw_manycore_py.platform.topology import shared_memory_place
 
 PACKAGES = ("rmw-manycore", "ros-rclpy", "ros-rmw-fastrtps-cpp", "ros-fastrtps")
 

@@ -10,7 +10,7 @@ from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, MIB, Middleware
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.session import Process, Session
 from rmw_manycore_py.bench.summary import Result
-from rmw_manycore_py.topology import platforms_directory
+from rmw_manycore_py.platform.topology import platforms_directory
 
 NODES = 8
 NAME = "memory"

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rmw_manycore_py.bench.summary import SPREAD, Result, nearest_rank
-from rmw_manycore_py.figures import load_figure
+from rmw_manycore_py.picture.plotting import load_figure
 
 COLUMNS = 2
 # Maximum ratio of the largest to the smallest value on a linear scale.

@@ -21,9 +21,9 @@ from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.runs import living_runs, nodes_by_run
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, EXIT_FAILURE, ManycoreError
 from rmw_manycore_py.launch.events import Ended, Started, event_of
+from rmw_manycore_py.launch.runs.client import Client
+from rmw_manycore_py.launch.runs.directory import RunDirectory
 from rmw_manycore_py.process.signals import STOP_SIGNALS, SignalInbox, signal_inbox
-from rmw_manycore_py.runs.client import Client
-from rmw_manycore_py.runs.directory import RunDirectory
 
 DEFAULT_KEYS = "ctrl-p,ctrl-q"
 _STDIN, _STDOUT = 0, 1

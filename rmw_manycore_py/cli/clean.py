@@ -10,9 +10,9 @@ from rmw_manycore_py.cli.common.printing import echo, print_json, print_notices
 from rmw_manycore_py.cli.common.view import platform_names
 from rmw_manycore_py.emcos.memory import remove_names_of_the_dead
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.launch.runs.directory import remove_ended, runs_of
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.ros.domain import checked_platform
-from rmw_manycore_py.runs.directory import remove_ended, runs_of
 
 
 @click.command(

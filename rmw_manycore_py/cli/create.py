@@ -31,11 +31,11 @@ from rmw_manycore_py.create.figure import (
     draw,
 )
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.mapfile import as_data
 from rmw_manycore_py.mapfile.installed import installed_mapfiles
 from rmw_manycore_py.mapfile.placing.show import rules_in_words
-from rmw_manycore_py.topology import as_host_cpu, host_cpu_text
+from rmw_manycore_py.picture.plotting import load_figure
+from rmw_manycore_py.platform.topology import as_host_cpu, host_cpu_text
 
 _EXAMPLES = examples(
     "manycore create talker_listener -o generated",

@@ -17,9 +17,9 @@ from rmw_manycore_py.cli.common.runs import no_run, nodes_by_run
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.event_text import SUPERVISOR
 from rmw_manycore_py.launch.events import Output
-from rmw_manycore_py.runs.client import Client
-from rmw_manycore_py.runs.directory import RunDirectory, runs_of
-from rmw_manycore_py.runs.log_reader import LogLine, NodeLog, in_order
+from rmw_manycore_py.launch.runs.client import Client
+from rmw_manycore_py.launch.runs.directory import RunDirectory, runs_of
+from rmw_manycore_py.launch.runs.log_reader import LogLine, NodeLog, in_order
 
 
 @click.command(

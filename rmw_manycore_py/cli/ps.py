@@ -9,8 +9,8 @@ from rmw_manycore_py.cli.common.options import any_platform_option, examples, js
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.cli.common.rows import Row
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.runs.client import Client
-from rmw_manycore_py.runs.directory import RunDirectory, all_runs, runs_of
+from rmw_manycore_py.launch.runs.client import Client
+from rmw_manycore_py.launch.runs.directory import RunDirectory, all_runs, runs_of
 
 
 @click.command("ps", epilog=examples("manycore ps", "manycore ps --json"))

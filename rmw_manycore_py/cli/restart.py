@@ -14,8 +14,8 @@ from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.cli.common.runs import living_runs, nodes_by_run
 from rmw_manycore_py.errors import EXIT_FAILURE
 from rmw_manycore_py.launch.events import Ended, Finished, Restarting, Started, event_of
-from rmw_manycore_py.runs.client import Client
-from rmw_manycore_py.runs.directory import RunDirectory
+from rmw_manycore_py.launch.runs.client import Client
+from rmw_manycore_py.launch.runs.directory import RunDirectory
 
 # A program with a failing import exits after about 0.2 s.
 LOOK_S = 1.0

@@ -21,8 +21,8 @@ from rmw_manycore_py.cli.common.printing import (
 from rmw_manycore_py.cli.common.rows import Row, cluster_row, platform_row, process_row
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.native import _transport
+from rmw_manycore_py.platform.transfers import transfer_text
 from rmw_manycore_py.ros.names import node_names_by_process
-from rmw_manycore_py.transfers import transfer_text
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,10 @@ from rmw_manycore_py.cli.common.runs import living_runs, no_run, nodes_by_run
 from rmw_manycore_py.errors import EXIT_FAILURE, ManycoreError
 from rmw_manycore_py.launch.events import Finished, event_of
 from rmw_manycore_py.launch.platform import remaining_users
+from rmw_manycore_py.launch.runs.client import Client
+from rmw_manycore_py.launch.runs.directory import RunDirectory, runs_of
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native.errors import translate_native_errors
-from rmw_manycore_py.runs.client import Client
-from rmw_manycore_py.runs.directory import RunDirectory, runs_of
 
 
 @click.command(

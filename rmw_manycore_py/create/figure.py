@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rmw_manycore_py.create.report import count_lines, delta_loc, estimated_loc
-from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.mapfile import check
+from rmw_manycore_py.picture.plotting import load_figure
 
 FILE = "figure_12.svg"
 MAX_NODES = 50

@@ -18,7 +18,7 @@ from rmw_manycore_program import own_program
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.events import Ended, Event, Platform, Started, event_of
 from rmw_manycore_py.mapfile import Mapfile, load_mapfile, resolve
-from rmw_manycore_py.topology import HostCpu
+from rmw_manycore_py.platform.topology import HostCpu
 
 OnOutput = Callable[[str, str], None]
 

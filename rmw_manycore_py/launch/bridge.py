@@ -6,15 +6,15 @@ from __future__ import annotations
 from contextlib import closing
 
 from rmw_manycore_program import own_program
-from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.launch.events import Finished
 from rmw_manycore_py.launch.processes.environment import outside_environment
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.runner import Report, Runner
 from rmw_manycore_py.mapfile.placing.placement import Placement
+from rmw_manycore_py.platform.topology import Core
 from rmw_manycore_py.process.signals import signal_inbox
-from rmw_manycore_py.routes import DIRECTIONS, Direction
-from rmw_manycore_py.topology import Core
+from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import DIRECTIONS, Direction
 
 # Cores of a bridge without a mapfile: the first that are not reserved.
 _STANDALONE_CORES = (Core(1, 1), Core(1, 2))

@@ -12,7 +12,7 @@ from contextlib import suppress
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.processes.terminal import set_size
 from rmw_manycore_py.launch.runner import Runner
-from rmw_manycore_py.runs.lines import LineBuffer, Message, encoded
+from rmw_manycore_py.launch.runs.lines import LineBuffer, Message, encoded
 
 # A client that lags further behind is disconnected.
 MAX_QUEUE_BYTES = 4 << 20

@@ -28,7 +28,7 @@ from rmw_manycore_py.launch.requests import (
     request_of,
 )
 from rmw_manycore_py.launch.runner import Runner
-from rmw_manycore_py.runs.lines import Message, encoded
+from rmw_manycore_py.launch.runs.lines import Message, encoded
 
 _CREDENTIALS = struct.Struct("3i")
 # More than one person's shells; keeps file descriptors free for nodes.

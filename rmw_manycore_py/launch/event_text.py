@@ -13,7 +13,7 @@ from rmw_manycore_py.launch.events import (
     Started,
     Stopping,
 )
-from rmw_manycore_py.topology import host_cpu_text
+from rmw_manycore_py.platform.topology import host_cpu_text
 
 SUPERVISOR = "manycore"  # prefix of the run's own output
 

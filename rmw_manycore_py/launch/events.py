@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from rmw_manycore_py.topology import HostCpu
+from rmw_manycore_py.platform.topology import HostCpu
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rmw_manycore_py.launch.event_text import SUPERVISOR, text_of
 from rmw_manycore_py.launch.events import Ended, Event, Notice, Output
-from rmw_manycore_py.runs.log_file import LogFile, share_of
+from rmw_manycore_py.launch.runs.log_file import LogFile, share_of
 
 
 class LogKeeper:

@@ -11,7 +11,7 @@ from rmw_manycore_py.launch.ros2_daemon import CURE, is_daemon
 from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native.errors import translate_native_errors
-from rmw_manycore_py.topology import RECEIVE_THREAD_CORE, Core
+from rmw_manycore_py.platform.topology import RECEIVE_THREAD_CORE, Core
 
 GROWS = 0  # size of a topic DSM that grows on demand
 

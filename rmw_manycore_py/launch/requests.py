@@ -17,7 +17,7 @@ from pydantic import (
 from typing_extensions import Self
 
 from rmw_manycore_py.errors import ManycoreError, shorten
-from rmw_manycore_py.runs.lines import Message
+from rmw_manycore_py.launch.runs.lines import Message
 
 _MAX_KEY, _MAX_FOUND = 40, 100
 

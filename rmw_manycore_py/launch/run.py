@@ -21,13 +21,13 @@ from rmw_manycore_py.launch.platform import check_joined, configured_platform, r
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.ros2_daemon import CURE, end_lone_daemons
 from rmw_manycore_py.launch.runner import Report, Runner
+from rmw_manycore_py.launch.runs.directory import OwnRun, new_run
+from rmw_manycore_py.launch.runs.private import write_private
 from rmw_manycore_py.launch.traced import traced
 from rmw_manycore_py.mapfile.placing.placement import PARAMETERS, Placement
+from rmw_manycore_py.platform.topology import RECEIVE_THREAD_CORE
 from rmw_manycore_py.process.scheduling import refusal
 from rmw_manycore_py.process.signals import SignalInbox, signal_inbox
-from rmw_manycore_py.runs.directory import OwnRun, new_run
-from rmw_manycore_py.runs.private import write_private
-from rmw_manycore_py.topology import RECEIVE_THREAD_CORE
 
 RECEIVE_THREAD = "(receive thread)"  # node names have no spaces
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from rmw_manycore_py.mapfile.format.model import MapfileSections, PlatformSection
 from rmw_manycore_py.mapfile.placing.crossings import CROSSINGS
-from rmw_manycore_py.topology import PROFILES
+from rmw_manycore_py.platform.topology import PROFILES
 
 _ID = "https://json-schema.org/draft/2020-12/schema"
 

@@ -15,8 +15,8 @@ from rmw_manycore_py.mapfile.placing.launched import program_of
 from rmw_manycore_py.mapfile.placing.parameters import Launched
 from rmw_manycore_py.mapfile.programs.executables import find_module
 from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
+from rmw_manycore_py.platform.topology import Topology, profile
 from rmw_manycore_py.ros.names import full_node_name
-from rmw_manycore_py.topology import Topology, profile
 
 _ADVICE = "# Choose the clusters. A node gets the first free core unless 'core' is set."
 _PLAN = "plan: true  # nodes need not be installed for map check and map show; run needs them"

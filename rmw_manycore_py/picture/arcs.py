@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from rmw_manycore_py.look.graph import Graph
 from rmw_manycore_py.picture.geometry import Curve, Point, Rect, connect, mean
 from rmw_manycore_py.picture.layout import Layout
+from rmw_manycore_py.platform.monitor.graph import Graph
 
 # With more pairs, curves meet in a point instead of n * m curves.
 MAX_PAIRS = 6

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rmw_manycore_py.look.watch import Look
 from rmw_manycore_py.picture.arcs import Arc, arcs_of
 from rmw_manycore_py.picture.drawing import draw
 from rmw_manycore_py.picture.layout import Layout, lay_out
 from rmw_manycore_py.picture.marks import Marks, marks_of
+from rmw_manycore_py.platform.monitor.watch import Look
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from rmw_manycore_py.look.graph import Graph, Member
 from rmw_manycore_py.picture.geometry import Rect
+from rmw_manycore_py.platform.monitor.graph import Graph, Member
 
 GAP = 6.0
 PAD = 12.0

@@ -7,12 +7,12 @@ import math
 from collections.abc import Iterator
 from functools import lru_cache
 
-from rmw_manycore_py.look.latency import TopicLatency
-from rmw_manycore_py.look.loads import Loads, TopicLoad
-from rmw_manycore_py.look.watch import Look
 from rmw_manycore_py.picture.arcs import Arc
 from rmw_manycore_py.picture.layout import Cell, ClusterBox, Layout
 from rmw_manycore_py.picture.texts import bytes_text, percent_text, rate_text, time_text
+from rmw_manycore_py.platform.monitor.latency import TopicLatency
+from rmw_manycore_py.platform.monitor.loads import Loads, TopicLoad
+from rmw_manycore_py.platform.monitor.watch import Look
 
 # Attributes of an element by id; "text" is its content, "rate" the speed of moving messages.
 Mark = dict[str, str | float]

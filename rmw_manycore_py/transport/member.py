@@ -9,7 +9,13 @@ from typing import Any, TypeVar
 import numpy as np
 
 from rmw_manycore_py.native import _transport
-from rmw_manycore_py.own_place import MAX_CLUSTER, MAX_CORE, own_cluster, own_core, own_wait_mode
+from rmw_manycore_py.platform.environment import (
+    MAX_CLUSTER,
+    MAX_CORE,
+    own_cluster,
+    own_core,
+    own_wait_mode,
+)
 from rmw_manycore_py.ros.domain import checked_platform, default_platform
 from rmw_manycore_py.transport.arguments import checked_name, checked_number, checked_topic
 from rmw_manycore_py.transport.closing import Closing

@@ -7,8 +7,10 @@ from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any
 
-from rmw_manycore_py.look.graph import Endpoint, Member
-from rmw_manycore_py.look.sample import (
+from rmw_manycore_py.picture.marks import topic_text
+from rmw_manycore_py.picture.texts import bytes_text, percent_text, rate_text
+from rmw_manycore_py.platform.monitor.graph import Endpoint, Member
+from rmw_manycore_py.platform.monitor.sample import (
     BYTES,
     CAPACITY,
     DEADLINES,
@@ -18,9 +20,7 @@ from rmw_manycore_py.look.sample import (
     QUEUED,
     REFUSED,
 )
-from rmw_manycore_py.look.watch import Look
-from rmw_manycore_py.picture.marks import topic_text
-from rmw_manycore_py.picture.texts import bytes_text, percent_text, rate_text
+from rmw_manycore_py.platform.monitor.watch import Look
 
 Row = dict[str, Any]
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rmw_manycore_py.look.watch import Look
+from rmw_manycore_py.platform.monitor.watch import Look
 
 LENGTH = 600  # looks: five minutes at two a second
 

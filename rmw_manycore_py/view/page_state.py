@@ -6,9 +6,9 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from rmw_manycore_py.look.watch import Look
 from rmw_manycore_py.picture.chip import Chip
 from rmw_manycore_py.picture.marks import Marks, changed
+from rmw_manycore_py.platform.monitor.watch import Look
 from rmw_manycore_py.view.details import node_details, topic_details
 from rmw_manycore_py.view.viewer import Viewer
 

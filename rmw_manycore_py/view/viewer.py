@@ -9,11 +9,11 @@ from collections import deque
 from typing import Any
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.look.events import Event
-from rmw_manycore_py.look.watch import Look, Watch
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.picture.chip import Chip
 from rmw_manycore_py.picture.marks import Marks
+from rmw_manycore_py.platform.monitor.events import Event
+from rmw_manycore_py.platform.monitor.watch import Look, Watch
 from rmw_manycore_py.view.history import History
 
 _KEPT_EVENTS = 500

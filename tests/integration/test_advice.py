@@ -22,8 +22,8 @@ from own_shm import can_mount
 from processes import kill_all
 from support import IS_MANYCORE, Program, manycore_command, wait_until
 
+from rmw_manycore_py.launch.runs.directory import runs_of
 from rmw_manycore_py.mapfile.installed import installed_mapfiles
-from rmw_manycore_py.runs.directory import runs_of
 
 pytestmark = [
     pytest.mark.integration,

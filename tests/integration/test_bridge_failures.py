@@ -29,9 +29,9 @@ from support import (
 
 from rmw_manycore_bridge.status import status
 from rmw_manycore_bridge.time_slice import SLICE_NS, time_slice_ns
-from rmw_manycore_py.bridge_plan import Plan
-from rmw_manycore_py.routes import arranged
-from rmw_manycore_py.topology import HostCpu, as_host_cpu
+from rmw_manycore_py.platform.topology import HostCpu, as_host_cpu
+from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import arranged
 
 pytestmark = [
     pytest.mark.integration,

@@ -16,8 +16,8 @@ import pytest
 from support import IS_MANYCORE, REPOSITORY, environment, manycore_command, wait_until
 
 from rmw_manycore_bridge.datagrams import receive_buffer_errors, socket_drops
-from rmw_manycore_py.bridge_plan import Plan
-from rmw_manycore_py.routes import arranged
+from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import arranged
 
 pytestmark = [
     pytest.mark.integration,

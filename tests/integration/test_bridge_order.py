@@ -16,7 +16,7 @@ from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
 from rmw_manycore_bridge.counters import CounterFile, status_path
 from rmw_manycore_py.native import _transport
-from rmw_manycore_py.routes import DIRECTIONS
+from rmw_manycore_py.routes.route import DIRECTIONS
 
 pytestmark = [
     pytest.mark.integration,

@@ -15,7 +15,7 @@ from support import IS_MANYCORE, example_command, manycore_command, wait_until
 
 from rmw_manycore_bridge.status import status
 from rmw_manycore_py.native import _transport
-from rmw_manycore_py.routes import DIRECTIONS, Direction
+from rmw_manycore_py.routes.route import DIRECTIONS, Direction
 
 pytestmark = [
     pytest.mark.integration,

@@ -14,7 +14,7 @@ from bridging import Bridge
 from ros_support import announce, peer_node, spin_until, type_of
 from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
-from rmw_manycore_py.routes import action_routes, parameter_routes
+from rmw_manycore_py.routes.route import action_routes, parameter_routes
 
 pytestmark = [
     pytest.mark.integration,

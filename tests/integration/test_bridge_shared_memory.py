@@ -20,8 +20,8 @@ from std_msgs.msg import UInt8MultiArray
 from support import IS_MANYCORE
 
 from rmw_manycore_bridge.transports import NOTICE, PROFILES, TRANSPORTS, avoid_shared_memory
-from rmw_manycore_py.bridge_plan import Plan
-from rmw_manycore_py.routes import arranged
+from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import arranged
 
 pytestmark = [
     pytest.mark.integration,

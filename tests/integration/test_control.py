@@ -22,8 +22,8 @@ from processes import is_asleep
 from support import IS_MANYCORE, TIMEOUT_S, Program, manycore_command, wait_until
 
 from rmw_manycore_py.launch.control import MAX_CLIENTS, STOP_PLACES
-from rmw_manycore_py.runs.directory import RunDirectory, runs_of
-from rmw_manycore_py.runs.lines import MAX_LINE_BYTES
+from rmw_manycore_py.launch.runs.directory import RunDirectory, runs_of
+from rmw_manycore_py.launch.runs.lines import MAX_LINE_BYTES
 
 pytestmark = [
     pytest.mark.integration,

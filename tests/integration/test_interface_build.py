@@ -14,8 +14,8 @@ from bridging import OUTSIDE
 from building import DEFINITIONS, HEARD, THINGS, interface, node_command, write_definitions
 from support import IS_MANYCORE, manycore_command
 
-from rmw_manycore_py.bridge_plan import Plan
-from rmw_manycore_py.routes import arranged
+from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import arranged
 
 pytestmark = [
     pytest.mark.integration,

@@ -20,8 +20,8 @@ from support import (
     wait_until,
 )
 
-from rmw_manycore_py.bench.reference.text import losses_in, reports_in, values
 from rmw_manycore_py.native import _transport
+from rmw_manycore_py.papers.reference_system.bench.text import losses_in, reports_in, values
 
 pytestmark = [
     pytest.mark.integration,

@@ -19,8 +19,8 @@ from support import TIMEOUT_S, Program, peer_command, wait_until
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import STOP_STEPS
 from rmw_manycore_py.launch.runner import Runner
+from rmw_manycore_py.platform.topology import Core
 from rmw_manycore_py.process.signals import signal_inbox
-from rmw_manycore_py.topology import Core
 
 pytestmark = pytest.mark.integration
 

@@ -14,8 +14,8 @@ from support import Program, peer_command
 
 from rmw_manycore_py.launch import runner
 from rmw_manycore_py.launch.processes.program import NodeProgram
+from rmw_manycore_py.platform.topology import Core
 from rmw_manycore_py.process.signals import signal_inbox
-from rmw_manycore_py.topology import Core
 
 pytestmark = pytest.mark.integration
 

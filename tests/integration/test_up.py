@@ -25,7 +25,7 @@ from support import (
 )
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
-from rmw_manycore_py.runs.directory import RunDirectory, runs_of
+from rmw_manycore_py.launch.runs.directory import RunDirectory, runs_of
 
 pytestmark = [
     pytest.mark.integration,

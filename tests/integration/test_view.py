@@ -20,7 +20,7 @@ from forked import forked_example, forked_manycore
 from support import IS_MANYCORE, PLATFORMS, TIMEOUT_S, leftovers, wait_until
 
 from rmw_manycore_py.bench.idle import wait_until_quiet, wake_ups
-from rmw_manycore_py.look.watch import Watch
+from rmw_manycore_py.platform.monitor.watch import Watch
 from rmw_manycore_py.view.client_user import user_of_client
 
 pytestmark = [

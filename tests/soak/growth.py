@@ -7,7 +7,7 @@ import csv
 from pathlib import Path
 from statistics import median
 
-from rmw_manycore_py.figures import load_figure
+from rmw_manycore_py.picture.plotting import load_figure
 from soak.holdings import Holdings
 
 # Python's and glibc's heaps settle late; everything else returns to exactly its former value.

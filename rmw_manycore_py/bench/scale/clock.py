@@ -22,7 +22,7 @@ from rmw_manycore_py.bench.session import TIMEOUT_S, Process, Session
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.native._transport import Platform
-from rmw_manycore_py.routes import Route
+from rmw_manycore_py.routes.route import Route
 
 AGE = "age of the time that a node gets, at 1 kHz"
 SEEN = "times that a node gets, of 1,000"

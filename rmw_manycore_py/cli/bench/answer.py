@@ -18,7 +18,7 @@ from rmw_manycore_py.bench.summary import Goal, Result, judge
 from rmw_manycore_py.cli.bench.report import Report
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.figures import load_figure
+from rmw_manycore_py.picture.plotting import load_figure
 
 QUICK_SHARE = 0.05
 

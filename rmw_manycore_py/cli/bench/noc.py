@@ -15,7 +15,7 @@ from rmw_manycore_py.papers.thesis.noc import host, model
 from rmw_manycore_py.papers.thesis.noc.cases import SIZES, checked_sizes
 from rmw_manycore_py.papers.thesis.noc.figures import figures
 from rmw_manycore_py.papers.thesis.noc.routes import chosen, routes
-from rmw_manycore_py.topology import usable_cpus
+from rmw_manycore_py.platform.topology import usable_cpus
 
 _EXAMPLES = examples(
     "manycore bench noc -o build/noc --plot",

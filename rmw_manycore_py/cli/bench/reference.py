@@ -8,12 +8,12 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.bench.reference.question import reference_question
-from rmw_manycore_py.bench.reference.setups import MESSAGES, Wanted
-from rmw_manycore_py.bench.reference.system import Nodes
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.papers.reference_system.bench.question import reference_question
+from rmw_manycore_py.papers.reference_system.bench.setups import MESSAGES, Wanted
+from rmw_manycore_py.papers.reference_system.bench.system import Nodes
 
 _EXAMPLES = examples(
     "manycore bench reference --rounds 1",

@@ -9,12 +9,12 @@ from pathlib import Path
 import click
 
 from rmw_manycore_bridge.config import load_bridge_file
-from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.launch.bridge import run_bridge
 from rmw_manycore_py.ros.domain import MAX_DOMAIN, ros_domain
+from rmw_manycore_py.routes.plan import Plan
 
 
 @click.command("run", epilog=examples("manycore bridge run domain_bridge.yaml --platform robot"))

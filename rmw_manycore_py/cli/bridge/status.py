@@ -12,7 +12,7 @@ from rmw_manycore_bridge.status import status
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table, size_text
 from rmw_manycore_py.cli.common.view import open_platform
-from rmw_manycore_py.topology import host_cpu_text
+from rmw_manycore_py.platform.topology import host_cpu_text
 
 _ARROWS = {"inward": "<-", "outward": "->"}
 

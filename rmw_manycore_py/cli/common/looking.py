@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.look.watch import Look, Watch
 from rmw_manycore_py.native.errors import translate_native_errors
+from rmw_manycore_py.platform.monitor.watch import Look, Watch
 
 
 def look_at(platform: str, watch: Watch) -> Look:

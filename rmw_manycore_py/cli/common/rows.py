@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from rmw_manycore_py.native import _transport
-from rmw_manycore_py.qos import policies_of
+from rmw_manycore_py.ros.qos import policies_of
 
 Row = dict[str, Any]
 

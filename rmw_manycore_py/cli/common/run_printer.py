@@ -26,7 +26,7 @@ from rmw_manycore_py.launch.events import (
     Platform,
     Restarting,
 )
-from rmw_manycore_py.topology import host_cpu_text
+from rmw_manycore_py.platform.topology import host_cpu_text
 
 COLOURS = (
     "cyan",

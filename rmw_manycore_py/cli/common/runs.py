@@ -7,7 +7,7 @@ import difflib
 from collections.abc import Iterable, Sequence
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.runs.directory import RunDirectory, all_runs, runs_of
+from rmw_manycore_py.launch.runs.directory import RunDirectory, all_runs, runs_of
 
 
 def living_runs(platform: str) -> list[RunDirectory]:

@@ -19,7 +19,7 @@ from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
 from rmw_manycore_py.cli.doctor.logout import check_logout
 from rmw_manycore_py.cli.doctor.scheduling import check_isolation, check_real_time
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.topology import platforms_directory, shared_memory_place
+from rmw_manycore_py.platform.topology import platforms_directory, shared_memory_place
 
 # Two Coolidge clusters and the registry: the minimum for the examples.
 USEFUL_SHARED_MEMORY_BYTES = 64 << 20

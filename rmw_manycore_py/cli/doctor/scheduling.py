@@ -6,8 +6,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict
+from rmw_manycore_py.platform.topology import isolated_cpus
 from rmw_manycore_py.process.scheduling import MAX_PRIORITY, Scheduling, real_time_limit, refusal
-from rmw_manycore_py.topology import isolated_cpus
 
 _RUNTIME = Path("/proc/sys/kernel/sched_rt_runtime_us")
 

@@ -11,7 +11,7 @@ from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.mapfile.template import init
-from rmw_manycore_py.topology import PROFILES
+from rmw_manycore_py.platform.topology import PROFILES
 
 
 @click.command(

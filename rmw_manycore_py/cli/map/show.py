@@ -20,8 +20,8 @@ from rmw_manycore_py.cli.common.printing import (
 )
 from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
 from rmw_manycore_py.mapfile.placing.show import as_data, rules_in_words
-from rmw_manycore_py.routes import DIRECTIONS
-from rmw_manycore_py.topology import as_host_cpu, host_cpu_text
+from rmw_manycore_py.platform.topology import as_host_cpu, host_cpu_text
+from rmw_manycore_py.routes.route import DIRECTIONS
 
 
 @click.command("show", epilog=examples("manycore map show three_nodes"))

@@ -11,12 +11,12 @@ from typing import Any, TypeVar
 import click
 
 from rmw_manycore_py.cli.common.output_file import OutputFile, writing
-from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay.table import write_csv
 from rmw_manycore_py.ndt.replay.tally import Tally
 from rmw_manycore_py.ndt.replay.trajectories import write_kitti, write_tum
+from rmw_manycore_py.picture.plotting import load_figure
 
 PICTURES = (".png", ".svg", ".pdf")
 

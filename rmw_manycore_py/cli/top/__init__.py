@@ -29,7 +29,7 @@ from rmw_manycore_py.cli.top.rows import (
     topic_rows,
 )
 from rmw_manycore_py.cli.top.screen import Choices, screen
-from rmw_manycore_py.look.watch import Look, Watch
+from rmw_manycore_py.platform.monitor.watch import Look, Watch
 
 _PLAIN_WIDTH = 1000  # no line breaks in pipes and files
 

@@ -13,7 +13,7 @@ from rich.live import Live
 
 from rmw_manycore_py.cli.top.keys import after_keys
 from rmw_manycore_py.cli.top.screen import Choices, screen
-from rmw_manycore_py.look.watch import Look
+from rmw_manycore_py.platform.monitor.watch import Look
 from rmw_manycore_py.process.signals import STOP_SIGNALS, SignalInbox, signal_inbox
 
 _FIRST_S = 0.3  # show the first figures early

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rmw_manycore_py.cli.common.rows import Row
-from rmw_manycore_py.look.graph import Member
-from rmw_manycore_py.look.watch import Look
+from rmw_manycore_py.platform.monitor.graph import Member
+from rmw_manycore_py.platform.monitor.watch import Look
 
 NODE_ORDERS = {"cpu": "cpu_percent", "cluster": "cluster", "core": "core", "name": "node"}
 TOPIC_ORDERS = {

@@ -20,8 +20,8 @@ from rmw_manycore_py.cli.top.rows import (
     ordered,
     topic_rows,
 )
-from rmw_manycore_py.look.watch import Look
 from rmw_manycore_py.picture.texts import time_text
+from rmw_manycore_py.platform.monitor.watch import Look
 
 BAR_WIDTH = 20
 _HOT, _WARM = 80.0, 40.0  # percent

@@ -16,8 +16,8 @@ from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.native._transport import EndpointInfo
 from rmw_manycore_py.process.spinning import spin_once
-from rmw_manycore_py.qos import all_reliable, all_transient_local
 from rmw_manycore_py.ros.names import expand
+from rmw_manycore_py.ros.qos import all_reliable, all_transient_local
 
 ANY_QOS = QosOptions()
 

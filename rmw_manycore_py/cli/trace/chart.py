@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rmw_manycore_py.cli.common.output_file import writing
-from rmw_manycore_py.figures import load_figure
+from rmw_manycore_py.picture.plotting import load_figure
 from rmw_manycore_py.trace.latency import ChainLatency
 
 _HOPS = ("bridge", "communication", "node")

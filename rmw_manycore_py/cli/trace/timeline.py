@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rmw_manycore_py.cli.common.output_file import writing
-from rmw_manycore_py.figures import load_figure
+from rmw_manycore_py.picture.plotting import load_figure
 from rmw_manycore_py.trace.chains import Passage
 from rmw_manycore_py.trace.events import Process, Trace
 from rmw_manycore_py.trace.flows import flows_of

@@ -17,8 +17,8 @@ from rmw_manycore_py.cli.common.output_file import OutputFile, writing
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.view import require_platform
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.look.watch import Look, Watch
 from rmw_manycore_py.picture.chip import Chip
+from rmw_manycore_py.platform.monitor.watch import Look, Watch
 from rmw_manycore_py.view.listener import Listener, listen
 
 DEFAULT_PORT = 8642

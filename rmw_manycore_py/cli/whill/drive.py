@@ -16,11 +16,11 @@ from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import OutputFile, writing
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.launch.processes.environment import OUTSIDE_IMPLEMENTATION, leave_middleware
 from rmw_manycore_py.papers.roslite2.course.directory import MAPFILE, read_course
 from rmw_manycore_py.papers.roslite2.laptop.drive_log import DriveLog, Summary
 from rmw_manycore_py.papers.roslite2.laptop.outcomes import outcomes
+from rmw_manycore_py.picture.plotting import load_figure
 
 
 @click.command(

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from rmw_manycore_py.launch.processes.environment import program_environment
 from rmw_manycore_py.mapfile.placing.placement import NO_RULES, LaunchRules, PlacedNode
+from rmw_manycore_py.platform.topology import Core, HostCpu, as_host_cpu
 from rmw_manycore_py.process.scheduling import Scheduling
-from rmw_manycore_py.topology import Core, HostCpu, as_host_cpu
 
 
 @dataclass(frozen=True)

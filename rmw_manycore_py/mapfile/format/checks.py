@@ -10,7 +10,7 @@ from rmw_manycore_py.errors import Problem
 from rmw_manycore_py.mapfile.format.document import KeyPath
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
 from rmw_manycore_py.mapfile.format.model import NodeSection
-from rmw_manycore_py.topology import Core
+from rmw_manycore_py.platform.topology import Core
 
 # Set from the placement; overriding them would move a node elsewhere.
 NODE_VARIABLES = ("MANYCORE_PLATFORM", "MANYCORE_CLUSTER", "MANYCORE_CORE")

@@ -20,7 +20,7 @@ from rmw_manycore_py.mapfile.format.model import MapfileSections, PlatformSectio
 from rmw_manycore_py.mapfile.format.normalise import normalise
 from rmw_manycore_py.mapfile.format.ros_lite import from_list
 from rmw_manycore_py.mapfile.format.validation import describe, problems_of
-from rmw_manycore_py.topology import Topology, profile
+from rmw_manycore_py.platform.topology import Topology, profile
 
 
 def load_mapfile(path: Path | str, *, starts_nodes: bool = True) -> Mapfile:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rmw_manycore_py.mapfile.format.document import Document
 from rmw_manycore_py.mapfile.format.model import MapfileSections
-from rmw_manycore_py.topology import Topology
+from rmw_manycore_py.platform.topology import Topology
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from collections.abc import Collection, Sequence
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
 from rmw_manycore_py.mapfile.placing.placement import BridgePlacement
-from rmw_manycore_py.topology import (
+from rmw_manycore_py.platform.topology import (
     RECEIVE_THREAD_CORE,
     Core,
     assign_host_cpus,

@@ -14,11 +14,12 @@ from rmw_manycore_py.mapfile.format.model import (
     RouteSection,
 )
 from rmw_manycore_py.mapfile.placing.placement import BridgePlacement
-from rmw_manycore_py.qos import Policies
+from rmw_manycore_py.platform.topology import Core
 from rmw_manycore_py.ros.domain import ros_domain
 from rmw_manycore_py.ros.names import expand, resolve_topic
 from rmw_manycore_py.ros.patterns import is_pattern
-from rmw_manycore_py.routes import (
+from rmw_manycore_py.ros.qos import Policies
+from rmw_manycore_py.routes.route import (
     REQUEST_TIMEOUT_S,
     Direction,
     Route,
@@ -26,7 +27,6 @@ from rmw_manycore_py.routes import (
     arranged,
     parameter_routes,
 )
-from rmw_manycore_py.topology import Core
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile

@@ -10,11 +10,11 @@ from typing import Any
 
 from rmw_manycore_py.mapfile.placing.parameters import GeneratedFile, Source, words_of
 from rmw_manycore_py.native.enums import Transfer
+from rmw_manycore_py.platform.topology import Core, Topology
+from rmw_manycore_py.platform.transfers import transfer_text
 from rmw_manycore_py.process.scheduling import Scheduling
 from rmw_manycore_py.ros.names import file_stem
-from rmw_manycore_py.routes import DIRECTIONS, Direction, Route
-from rmw_manycore_py.topology import Core, Topology
-from rmw_manycore_py.transfers import transfer_text
+from rmw_manycore_py.routes.route import DIRECTIONS, Direction, Route
 
 PARAMETERS = "parameters"  # directory of generated files, of a run and of `manycore create`
 

@@ -40,15 +40,15 @@ from rmw_manycore_py.mapfile.placing.topics import (
 )
 from rmw_manycore_py.mapfile.placing.workers import worker_cores
 from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
-from rmw_manycore_py.process.scheduling import Scheduling
-from rmw_manycore_py.ros.ament import canonical_type
-from rmw_manycore_py.ros.domain import default_platform, is_elsewhere
-from rmw_manycore_py.ros.names import full_node_name, resolve_topic
-from rmw_manycore_py.topology import (
+from rmw_manycore_py.platform.topology import (
     WORKER_CPUS,
     Core,
     usable_cpus,
 )
+from rmw_manycore_py.process.scheduling import Scheduling
+from rmw_manycore_py.ros.ament import canonical_type
+from rmw_manycore_py.ros.domain import default_platform, is_elsewhere
+from rmw_manycore_py.ros.names import full_node_name, resolve_topic
 
 # Larger than any message, so that glibc keeps freed memory instead of faulting it in again.
 _MALLOC_THRESHOLD = str(1 << 30)

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 from rmw_manycore_py.errors import Problem
 from rmw_manycore_py.mapfile.placing.crossings import CROSSINGS
 from rmw_manycore_py.mapfile.placing.placement import ClusterMemory, PlacedNode, TopicEntry
+from rmw_manycore_py.platform.topology import room_for_topic_dsms
 from rmw_manycore_py.ros import ament
 from rmw_manycore_py.ros.names import expand, resolve_topic
-from rmw_manycore_py.topology import room_for_topic_dsms
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile

@@ -7,7 +7,7 @@ from collections.abc import Collection
 
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
-from rmw_manycore_py.topology import Core
+from rmw_manycore_py.platform.topology import Core
 
 
 def worker_cores(mapfile: Mapfile, used: Collection[Core]) -> dict[str, tuple[Core, ...]]:

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.poses import transform
 from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay.tally import Played, Tally
+from rmw_manycore_py.picture.plotting import load_figure
 
 MAP_POINTS, SCAN_POINTS = 40_000, 10_000
 AROUND_M = 40.0  # width of the map shown beside the path

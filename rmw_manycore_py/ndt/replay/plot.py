@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.replay.tally import Tally
+from rmw_manycore_py.picture.plotting import load_figure
 
 MAP_POINTS = 30_000
 SCORES = {

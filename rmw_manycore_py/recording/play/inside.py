@@ -8,7 +8,7 @@ import os
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.native.errors import translate_native_errors
-from rmw_manycore_py.own_place import own_cluster
+from rmw_manycore_py.platform.environment import own_cluster
 from rmw_manycore_py.recording.play.stage import RawPublisher
 
 

@@ -7,10 +7,10 @@ import time
 from collections.abc import Callable, Sequence
 
 from rmw_manycore_py.native._transport import Qos
-from rmw_manycore_py.qos import all_reliable, all_transient_local
 from rmw_manycore_py.recording.metadata import TopicRow
 from rmw_manycore_py.recording.record.side import Offer, RawSubscription, Side
 from rmw_manycore_py.recording.record.writing import Taken, WritingThread
+from rmw_manycore_py.ros.qos import all_reliable, all_transient_local
 
 
 class RecordedTopic:

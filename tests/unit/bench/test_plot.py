@@ -13,7 +13,7 @@ import pytest
 from rmw_manycore_py.bench.plot import plot
 from rmw_manycore_py.bench.summary import Curve, Result
 from rmw_manycore_py.cli.bench.report import Report
-from rmw_manycore_py.figures import load_figure
+from rmw_manycore_py.picture.plotting import load_figure
 
 pytestmark = pytest.mark.unit
 

@@ -9,7 +9,7 @@ import pytest
 
 from rmw_manycore_bridge.config import load_bridge_file
 from rmw_manycore_py.errors import MapfileError
-from rmw_manycore_py.routes import Route
+from rmw_manycore_py.routes.route import Route
 
 pytestmark = pytest.mark.unit
 

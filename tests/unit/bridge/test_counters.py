@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from rmw_manycore_bridge.counters import CounterFile
-from rmw_manycore_py.routes import Route
+from rmw_manycore_py.routes.route import Route
 
 Create = Callable[..., CounterFile]
 pytestmark = pytest.mark.unit

@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-from rmw_manycore_py.look.graph import Endpoint, Graph, Member
 from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.picture.arcs import MAX_PAIRS, arcs_of
 from rmw_manycore_py.picture.drawing import draw
@@ -17,7 +16,8 @@ from rmw_manycore_py.picture.geometry import Rect
 from rmw_manycore_py.picture.layout import MAX_NODES_OF_CELL, Layout, lay_out
 from rmw_manycore_py.picture.marks import changed, level
 from rmw_manycore_py.picture.texts import bytes_text, fitted, rate_text, time_text
-from rmw_manycore_py.qos import policies_of
+from rmw_manycore_py.platform.monitor.graph import Endpoint, Graph, Member
+from rmw_manycore_py.ros.qos import policies_of
 
 pytestmark = pytest.mark.unit
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rmw_manycore_py.cli.common.printing import size_text
-from rmw_manycore_py.topology import shared_memory_place
+from rmw_manycore_py.platform.topology import shared_memory_place
 
 _CGROUP = Path("/sys/fs/cgroup")
 

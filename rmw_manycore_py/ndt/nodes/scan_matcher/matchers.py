@@ -9,7 +9,7 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.matching.matcher import Matcher, SerialMatcher
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.worker_matcher import WorkerMatcher
-from rmw_manycore_py.topology import WORKER_CPUS
+from rmw_manycore_py.platform.topology import WORKER_CPUS
 
 
 def make_matcher(options: MatcherOptions, named_cpus: tuple[int, ...]) -> Matcher:

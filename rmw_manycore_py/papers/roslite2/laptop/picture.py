@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.papers.roslite2.course.directory import Course
 from rmw_manycore_py.papers.roslite2.laptop.drive_log import DEADLINE_S, DriveLog
+from rmw_manycore_py.picture.plotting import load_figure
 
 MAP_POINTS = 30_000
 INCIDENT = "tab:red"

@@ -31,7 +31,7 @@ from rmw_manycore_py.papers.thesis.matrix.cases import (
 )
 from rmw_manycore_py.papers.thesis.matrix.claims import CLAIMS
 from rmw_manycore_py.papers.thesis.matrix.figures import Draw
-from rmw_manycore_py.topology import usable_cpus
+from rmw_manycore_py.platform.topology import usable_cpus
 
 WARM_UP = 2
 QUICK_RUNS = RUNS // 4  # before they are cut further: some products take a second uncached

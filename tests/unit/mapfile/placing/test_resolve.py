@@ -12,8 +12,8 @@ from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import Placement, as_data, check
 from rmw_manycore_py.mapfile.placing.parameter_values import parameter_text
 from rmw_manycore_py.mapfile.placing.sessions import MAX_SESSIONS
+from rmw_manycore_py.platform.topology import Core
 from rmw_manycore_py.ros.names import resolve_topic
-from rmw_manycore_py.topology import Core
 
 pytestmark = pytest.mark.unit
 

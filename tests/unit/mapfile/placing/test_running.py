@@ -16,7 +16,7 @@ from rmw_manycore_py.create import create
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import Placement, as_data, check, load_mapfile, resolve
 from rmw_manycore_py.mapfile.placing.show import rules_in_words
-from rmw_manycore_py.topology import Core
+from rmw_manycore_py.platform.topology import Core
 
 pytestmark = pytest.mark.unit
 

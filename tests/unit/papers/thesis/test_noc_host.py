@@ -12,11 +12,11 @@ from rmw_manycore_py.bench.box_plot import Boxes, draw_boxes
 from rmw_manycore_py.bench.summary import Result
 from rmw_manycore_py.cli.main import cli
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.papers.thesis.matrix.cases import cases
 from rmw_manycore_py.papers.thesis.noc.cases import SIZES, Setting, size_name
 from rmw_manycore_py.papers.thesis.noc.figures import figures
 from rmw_manycore_py.papers.thesis.noc.routes import Placement, chosen, main_route, routes
+from rmw_manycore_py.picture.plotting import load_figure
 
 pytestmark = pytest.mark.unit
 
