@@ -15,7 +15,6 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.platform import occupied_cores
 from rmw_manycore_py.launch.run import Mode, Run
 from rmw_manycore_py.mapfile import Mapfile, Placement, load_mapfile, resolve
-from rmw_manycore_py.mapfile.placing.resolve import platform_name
 
 
 def starting_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -38,7 +37,7 @@ def prepared_run(
 ) -> tuple[Run, Placement]:
     """Return the run of a mapfile or of some of its nodes, without starting it."""
     loaded = _only(load_mapfile(mapfile), nodes)
-    occupied = occupied_cores(platform_name(loaded)) if joins else ()
+    occupied = occupied_cores(loaded.platform_name) if joins else ()
     placement = resolve(loaded, occupied)
     return Run(placement, Mode(mapfile, joins, detached)), placement
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from rmw_manycore_py.mapfile.format.document import Document
 from rmw_manycore_py.mapfile.format.model import MapfileSections
 from rmw_manycore_py.platform.topology import Topology
+from rmw_manycore_py.ros.domain import default_platform
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,11 @@ class Mapfile:
     topology: Topology
     document: Document
     notices: tuple[str, ...]
+
+    @property
+    def platform_name(self) -> str:
+        """Name of the platform; default: the platform of nodes started by hand."""
+        return self.sections.platform.name or default_platform()
 
     def file(self, name: str) -> Path:
         """Return the path of a referenced file: relative to the mapfile, `~` expanded."""

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Assigns cores to nodes, and host CPUs to cores."""
+"""Assigns cores to nodes and their workers, and host CPUs to cores."""
 
 from __future__ import annotations
 
@@ -38,6 +38,22 @@ def assign_cores(mapfile: Mapfile, occupied: Collection[Core] = ()) -> dict[str,
             raise MapfileError(mapfile.document.problem(("nodes", name), expected, found))
         cores[name] = Core(cluster.id, free[0])
         taken.add(cores[name])
+    return cores
+
+
+def worker_cores(mapfile: Mapfile, used: Collection[Core]) -> dict[str, tuple[Core, ...]]:
+    """Return the cores of each node's workers: the first free ones of its cluster."""
+    taken = set(used)
+    cores: dict[str, tuple[Core, ...]] = {}
+    for name, node in mapfile.sections.nodes.items():
+        cluster = mapfile.topology.clusters[node.cluster - 1]
+        free = [core for core in cluster.free if Core(cluster.id, core) not in taken]
+        if node.workers > len(free):
+            expected = f"at most {len(free)}, the cores that are left in cluster {cluster.id}"
+            path = ("nodes", name, "workers")
+            raise MapfileError(mapfile.document.problem(path, expected, str(node.workers)))
+        cores[name] = tuple(Core(cluster.id, core) for core in free[: node.workers])
+        taken.update(cores[name])
     return cores
 
 

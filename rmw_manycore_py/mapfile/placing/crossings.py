@@ -16,7 +16,7 @@ from rmw_manycore_py.mapfile.format.model import (
 from rmw_manycore_py.mapfile.placing.placement import BridgePlacement
 from rmw_manycore_py.platform.topology import Core
 from rmw_manycore_py.ros.domain import ros_domain
-from rmw_manycore_py.ros.names import expand, resolve_topic
+from rmw_manycore_py.ros.names import expand
 from rmw_manycore_py.ros.patterns import is_pattern
 from rmw_manycore_py.ros.qos import Policies
 from rmw_manycore_py.routes.route import (
@@ -68,7 +68,7 @@ def bridge_placement(
 def _routes_of(bridge: BridgeSection, node: NodeSection, start: NodeStart) -> Iterator[Route]:
     for key, direction in CROSSINGS.items():
         for name, type_name in getattr(node, key).items():
-            inside = resolve_topic(name, start.full_name, start.remappings)
+            inside = start.topic(name)
             route = _route(bridge, inside, type_name, direction)
             yield from action_routes(route) if key.startswith("action") else (route,)
     if node.parameters_in:

@@ -9,8 +9,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rmw_manycore_py.errors import MapfileError, Problem
-from rmw_manycore_py.mapfile.programs.source import imported_interfaces
+from rmw_manycore_py.errors import Problem
 from rmw_manycore_py.ros import ament
 
 if TYPE_CHECKING:
@@ -18,27 +17,28 @@ if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.placing.start import NodeStart
 
 
-def check_imports(mapfile: Mapfile, starts: Mapping[str, NodeStart]) -> Iterator[Problem]:
-    """Yield types imported by a node whose packages are not installed."""
+def check_imports(
+    mapfile: Mapfile, starts: Mapping[str, NodeStart]
+) -> tuple[list[Problem], list[str]]:
+    """Return a problem for each imported type whose package is not installed, and notices.
+
+    A type that its installed package does not define is a notice only: a program may add it to the
+    package before importing it, as rosboard does.
+    """
+    problems: list[Problem] = []
+    notices: list[str] = []
     for name, start in starts.items():
         for type_name, place in _missing(start):
             package = type_name.split("/")[0]
-            if not ament.interfaces(package):
-                expected = f"{type_name} to be installed, which {place} imports"
-                found = f"the package '{package}' not installed"
-                yield mapfile.document.problem(("nodes", name), expected, found)
-
-
-def notices_of_imports(starts: Mapping[str, NodeStart]) -> Iterator[str]:
-    """Yield types imported by a node that their installed packages do not define.
-
-    This is a notice only: a program may add a type to a package before importing it, as rosboard
-    does.
-    """
-    for name, start in starts.items():
-        for type_name, place in _missing(start):
-            if ament.interfaces(type_name.split("/")[0]):
-                yield f"'{name}' imports {type_name} ({place}), which its package does not have"
+            if ament.interfaces(package):
+                notices.append(
+                    f"'{name}' imports {type_name} ({place}), which its package does not have"
+                )
+                continue
+            expected = f"{type_name} to be installed, which {place} imports"
+            found = f"the package '{package}' not installed"
+            problems.append(mapfile.document.problem(("nodes", name), expected, found))
+    return problems, notices
 
 
 def _missing(start: NodeStart) -> Iterator[tuple[str, str]]:
@@ -49,16 +49,12 @@ def _missing(start: NodeStart) -> Iterator[tuple[str, str]]:
 
 def _needed(start: NodeStart) -> dict[str, str]:
     """Return the types that a node's source imports, with locations, if it runs here."""
-    source = start.program.source
-    if source is None or "PYTHONPATH" in start.env:
+    file, source = start.program.source, start.source
+    if file is None or source is None or "PYTHONPATH" in start.env:
         return {}
     if Path(start.program.argv[0]).parent != Path(sys.executable).parent:
         return {}
-    try:
-        imported = imported_interfaces(source)
-    except MapfileError:
-        return {}  # Python reports the error at run time.
-    return {type_name: f"{source.name}:{line}" for type_name, line in imported.items()}
+    return {type_name: f"{file.name}:{line}" for type_name, line in source.interfaces.items()}
 
 
 def _is_installed(package: str, type_name: str) -> bool:

@@ -15,6 +15,7 @@ from rmw_manycore_py.mapfile.launch_file import (
     LaunchedNode,
     LaunchFile,
     ParameterSource,
+    read_launch_file,
 )
 from rmw_manycore_py.mapfile.launch_file.unavailable import missing_package
 from rmw_manycore_py.mapfile.placing.parameters import Launched
@@ -27,6 +28,25 @@ from rmw_manycore_py.ros.parameter_files import read_file, read_text, values_for
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+
+
+def read_launch(mapfile: Mapfile) -> LaunchFile | None:
+    """Read the launch file of a mapfile, if it has one."""
+    sections = mapfile.sections
+    if sections.launch_path is None:
+        return None
+    launch = read_launch_file(mapfile.file(sections.launch_path), sections.launch_arguments)
+    known = ", ".join(sorted(launch.arguments)) or "it has none"
+    problems = [
+        mapfile.document.problem(
+            ("launch_arguments", name), f"an argument of the launch file ({known})", f"'{name}'"
+        )
+        for name in sections.launch_arguments
+        if name not in launch.arguments
+    ]
+    if problems:
+        raise MapfileError(*problems)
+    return launch
 
 
 def find_launched(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> Launched | None:

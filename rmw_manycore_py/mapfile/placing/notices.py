@@ -8,18 +8,38 @@ import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode
 from rmw_manycore_py.mapfile.placing.prefix import placed_again
-from rmw_manycore_py.mapfile.programs.source import scan
 from rmw_manycore_py.process.scheduling import refusal
 from rmw_manycore_py.ros.domain import is_elsewhere
-from rmw_manycore_py.ros.names import resolve_topic
+from rmw_manycore_py.ros.names import full_node_name
 from rmw_manycore_py.ros.patterns import is_pattern
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+    from rmw_manycore_py.mapfile.launch_file import LaunchFile
     from rmw_manycore_py.mapfile.placing.start import NodeStart
+
+
+def of_launch(mapfile: Mapfile, launch: LaunchFile | None) -> Iterator[str]:
+    """Yield notices of the launch file, and its nodes that the mapfile does not have."""
+    if launch is None:
+        return
+    yield from launch.notices
+    for node in launch.nodes:
+        full = full_node_name(node.namespace, node.label)
+        if not {node.label, full, full[1:]} & set(mapfile.sections.nodes):
+            place = f"{node.file}:{node.line}"
+            yield f"{place}: '{node.label}' is not in the mapfile and does not run here"
+
+
+def shared_cpus(cores: int, cpus: int) -> Iterator[str]:
+    """Yield a notice if there are fewer host CPUs than cores in use."""
+    if cores > cpus:
+        yield (
+            f"{cores} cores in use on {cpus} host CPUs: some share a CPU, "
+            "so timing is not that of the target"
+        )
 
 
 def unpublished(
@@ -32,8 +52,8 @@ def unpublished(
         for written, type_name in section.topic_to.items():
             if type_name is None or is_pattern(written) or "/msg/" not in type_name:
                 continue
-            topic = resolve_topic(written, start.full_name, start.remappings)
-            if topic in published or not _says_all(start):
+            topic = start.topic(written)
+            if topic in published or start.shown is None or start.shown.unclear:
                 continue
             place = f"{mapfile.path}:{mapfile.document.line(('nodes', name, 'topic_to', written))}"
             meant = _advice(topic, published)
@@ -72,17 +92,6 @@ def elsewhere(platform: str, nodes: Sequence[PlacedNode]) -> Iterator[str]:
                 f"'{node.name}' has ROS_DOMAIN_ID={domain}: it meets the nodes of that domain, "
                 f"and none of platform '{platform}'"
             )
-
-
-def _says_all(start: NodeStart) -> bool:
-    """Return whether a node's source shows everything it publishes."""
-    if start.program.source is None:
-        return False
-    try:
-        nodes = scan(start.program.source)
-    except MapfileError:
-        return False
-    return len(nodes) == 1 and not nodes[0].unclear
 
 
 def _advice(topic: str, published: set[str]) -> str:

@@ -24,7 +24,8 @@ from rmw_manycore_py.mapfile.placing.parameters import (
 )
 from rmw_manycore_py.mapfile.programs import executables
 from rmw_manycore_py.mapfile.programs.executables import Program
-from rmw_manycore_py.ros.names import full_node_name
+from rmw_manycore_py.mapfile.programs.source import SourceFile, SourceNode, Sources
+from rmw_manycore_py.ros.names import full_node_name, resolve_topic
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NodeStart:
-    """Everything in the command line of a node."""
+    """What the mapfile, the launch file and the source of a node say about it."""
 
     full_name: str
     program: Program
@@ -48,9 +49,56 @@ class NodeStart:
     directory: str | None = None
     launched: Launched | None = None
     missing: tuple[Problem, ...] = ()  # why there is no program
+    source: SourceFile | None = None
+
+    @property
+    def shown(self) -> SourceNode | None:
+        """The node as its source shows it; None if the source has several nodes, or none."""
+        nodes = self.source.nodes if self.source else []
+        return nodes[0] if len(nodes) == 1 else None
+
+    def topic(self, name: str) -> str:
+        """Return the full name of a topic, service or action that the node knows as `name`."""
+        return resolve_topic(name, self.full_name, self.remappings)
 
 
-def node_start(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> NodeStart:
+def node_starts(
+    mapfile: Mapfile, launch: LaunchFile | None, *, is_plan: bool = False
+) -> dict[str, NodeStart]:
+    """Return how each node is started; raise MapfileError for what does not exist.
+
+    :param is_plan: whether programs may be missing.
+    """
+    starts: dict[str, NodeStart] = {}
+    owners: dict[str, str] = {}
+    problems: list[Problem] = []
+    python_files = Sources()
+    for name in mapfile.sections.nodes:
+        try:
+            start = node_start(mapfile, name, launch, python_files)
+        except MapfileError as error:
+            problems += error.problems
+            continue
+        if not is_plan:
+            problems += start.missing
+        starts[name] = start
+        if start.full_name in owners and not _has_number(start):
+            found = f"{start.full_name}, the name of '{owners[start.full_name]}'"
+            problems.append(mapfile.document.problem(("nodes", name), "a name of its own", found))
+        owners.setdefault(start.full_name, name)
+    if problems:
+        raise MapfileError(*problems)
+    return starts
+
+
+def _has_number(start: NodeStart) -> bool:
+    """Return whether the launch file starts several nodes of one name."""
+    return isinstance(start.launched, LaunchedNode) and start.launched.number > 1
+
+
+def node_start(
+    mapfile: Mapfile, name: str, launch: LaunchFile | None, python_files: Sources
+) -> NodeStart:
     """Return how a node is started, or in `missing` why its program does not exist."""
     node = mapfile.sections.nodes[name]
     launched = find_launched(mapfile, name, launch)
@@ -84,6 +132,7 @@ def node_start(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> NodeSt
         is_named=is_named,
         directory=process.cwd if process else None,
         launched=launched,
+        source=python_files.read(program.source) if program.source else None,
     )
 
 

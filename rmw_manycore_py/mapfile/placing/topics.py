@@ -11,7 +11,7 @@ from rmw_manycore_py.mapfile.placing.crossings import CROSSINGS
 from rmw_manycore_py.mapfile.placing.placement import ClusterMemory, PlacedNode, TopicEntry
 from rmw_manycore_py.platform.topology import room_for_topic_dsms
 from rmw_manycore_py.ros import ament
-from rmw_manycore_py.ros.names import expand, resolve_topic
+from rmw_manycore_py.ros.names import expand
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile
@@ -82,7 +82,7 @@ def check_crossing_types(
             for name, type_name in getattr(section, key).items():
                 if type_name is None:
                     continue
-                full = resolve_topic(name, starts[node].full_name, starts[node].remappings)
+                full = starts[node].topic(name)
                 kind = type_name.split("/")[1]
                 expected = known.setdefault((kind, full), type_name)
                 if type_name != expected:

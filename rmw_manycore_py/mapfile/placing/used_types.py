@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
 from rmw_manycore_py.mapfile.placing.crossings import CROSSINGS
-from rmw_manycore_py.mapfile.placing.resolve import node_starts, read_launch
-from rmw_manycore_py.mapfile.programs.source import imported_interfaces
+from rmw_manycore_py.mapfile.placing.launched import read_launch
+from rmw_manycore_py.mapfile.placing.start import node_starts
 
 
 def used_types(mapfile: Mapfile) -> set[str]:
@@ -19,9 +18,6 @@ def used_types(mapfile: Mapfile) -> set[str]:
             found.update(getattr(node, key).values())
     starts = node_starts(mapfile, read_launch(mapfile), is_plan=sections.plan)
     for start in starts.values():
-        if start.program.source is not None:
-            try:
-                found.update(imported_interfaces(start.program.source))
-            except MapfileError:
-                continue  # Python reports the error at run time.
+        if start.source is not None:
+            found.update(start.source.interfaces)
     return {name for name in found if name is not None}

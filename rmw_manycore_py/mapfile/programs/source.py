@@ -30,9 +30,45 @@ class SourceNode:
     unclear: list[int] = field(default_factory=list)
 
 
+@dataclass(frozen=True)
+class SourceFile:
+    """A parsed Python file: its nodes in line order, and the interface types that it imports.
+
+    `interfaces` are the unconditional imports, each with its line.
+    """
+
+    nodes: list[SourceNode]
+    interfaces: dict[str, int]
+
+
+class Sources:
+    """Python files of the nodes of a mapfile; parses each file once."""
+
+    def __init__(self) -> None:
+        self._files: dict[Path, SourceFile | None] = {}
+
+    def read(self, file: Path) -> SourceFile | None:
+        """Return a file; None if it is not valid Python, which Python reports at run time."""
+        if file not in self._files:
+            try:
+                self._files[file] = read_source(file)
+            except MapfileError:
+                self._files[file] = None
+        return self._files[file]
+
+
 def scan(file: Path) -> list[SourceNode]:
     """Return the nodes created in a Python file, in line order."""
+    return read_source(file).nodes
+
+
+def read_source(file: Path) -> SourceFile:
+    """Parse a Python file; raise MapfileError if it is not valid Python."""
     tree = _parse(file)
+    return SourceFile(_nodes(file, tree), _interfaces(tree))
+
+
+def _nodes(file: Path, tree: ast.Module) -> list[SourceNode]:
     names = _Names(tree)
     classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
     nodes = [found for cls in classes if (found := _class_node(file, cls, names))]
@@ -42,9 +78,8 @@ def scan(file: Path) -> list[SourceNode]:
     return sorted(nodes, key=lambda node: node.line)
 
 
-def imported_interfaces(file: Path) -> dict[str, int]:
-    """Return the interface types that a Python file imports unconditionally, each with its line."""
-    imports = (part for part in _parse(file).body if isinstance(part, ast.ImportFrom))
+def _interfaces(tree: ast.Module) -> dict[str, int]:
+    imports = (part for part in tree.body if isinstance(part, ast.ImportFrom))
     return {
         f"{part.module}.{alias.name}".replace(".", "/"): part.lineno
         for part in imports

@@ -11,6 +11,7 @@ from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import check
 from rmw_manycore_py.mapfile.format.loader import load_mapfile
 from rmw_manycore_py.mapfile.placing.used_types import used_types
+from rmw_manycore_py.mapfile.programs.source import Sources
 
 pytestmark = pytest.mark.unit
 
@@ -88,3 +89,17 @@ def test_used_types_are_those_of_the_mapfile_and_of_imports(tmp_path: Path) -> N
     text = "nodes:\n  a: {cluster: 1, script: one.py, subscribe: {/n: std_msgs/msg/Int8}}\n"
     mapfile = load_mapfile(_write(tmp_path, text, "String, Bool"))
     assert used_types(mapfile) == {f"std_msgs/msg/{name}" for name in ("Int8", "String", "Bool")}
+
+
+def test_sources_parse_a_file_once(tmp_path: Path) -> None:
+    _write(tmp_path, "")
+    bad = tmp_path / "bad.py"
+    bad.write_text("def (:\n")
+    sources = Sources()
+    read = sources.read(tmp_path / "one.py")
+    assert read is not None
+    assert sources.read(bad) is None
+    bad.write_text("")
+    (tmp_path / "one.py").write_text("")
+    assert sources.read(tmp_path / "one.py") is read
+    assert sources.read(bad) is None
