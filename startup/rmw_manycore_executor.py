@@ -12,12 +12,12 @@ Imports only what Python has already imported: this runs before everything else.
 from __future__ import annotations
 
 import os
-import sys
+
+from rmw_manycore_loading import ChangesAfterLoading
 
 TYPE_CHECKING = False  # type checkers treat it as typing.TYPE_CHECKING
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-    from importlib.machinery import ModuleSpec
+    from collections.abc import Callable
     from types import ModuleType
     from typing import Any
 
@@ -26,15 +26,13 @@ MIN_THREADS = 2  # as in rclcpp: one for the waiting callback, one for the other
 
 def install() -> None:
     """Patch modules of rclpy when this process imports them."""
-    if any(isinstance(finder, _Finder) for finder in sys.meta_path):
-        return  # site.py of a virtual environment calls this twice
     changes: dict[str, list[Callable[[ModuleType], None]]] = {"rclpy.executors": [change_default]}
     if design := os.environ.get("MANYCORE_RECEIVE"):
         import rmw_manycore_receive
 
         for name, change in rmw_manycore_receive.changes(design).items():
             changes.setdefault(name, []).append(change)
-    sys.meta_path.insert(0, _Finder(changes))
+    ChangesAfterLoading.install("executor", lambda name: changes.get(name, ()))
 
 
 def default_threads() -> int:
@@ -58,34 +56,3 @@ def change_default(executors: ModuleType) -> None:
         original(self, num_threads, *more, **named)
 
     executor.__init__ = initialise
-
-
-class _Finder:
-    """Import hook that patches modules of rclpy after they are loaded."""
-
-    def __init__(self, changes: Mapping[str, Sequence[Callable[[ModuleType], None]]]) -> None:
-        self._changes = changes
-
-    def find_spec(
-        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
-    ) -> ModuleSpec | None:
-        if name not in self._changes:
-            return None
-        for finder in sys.meta_path:
-            spec = None if isinstance(finder, _Finder) else finder.find_spec(name, path, target)
-            if spec is not None and spec.loader is not None:
-                _change_when_loaded(spec.loader, self._changes[name])
-                return spec
-        return None
-
-
-def _change_when_loaded(loader: Any, changes: Sequence[Callable[[ModuleType], None]]) -> None:
-    """Patch the loader of this module so that the changes are made after loading."""
-    load = loader.exec_module
-
-    def exec_module(module: ModuleType) -> None:
-        load(module)
-        for change in changes:
-            change(module)
-
-    loader.exec_module = exec_module

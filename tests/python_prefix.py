@@ -30,8 +30,8 @@ class Prefix:
         self.python = path / "bin/python"
         self.site_packages = next(path.glob("lib/python*/site-packages"))
         self.stand_ins = path / "lib/rmw_manycore/standin"
-        for name in ("executor.py", "hook.py", "interfaces.py", "program.py"):
-            shutil.copy(Path(hook.__file__).parent / f"rmw_manycore_{name}", self.site_packages)
+        for name in ("executor", "fields", "hook", "interfaces", "loading", "program"):
+            shutil.copy(Path(hook.__file__).parent / f"rmw_manycore_{name}.py", self.site_packages)
         shutil.copy(Path(hook.__file__).parent / "rmw_manycore.pth", self.site_packages)
         self.stand_ins.mkdir(parents=True)
         (self.site_packages / "ros_rcl.libs").mkdir()

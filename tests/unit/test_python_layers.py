@@ -18,7 +18,8 @@ ROOTS = (REPOSITORY, REPOSITORY / "bridge", REPOSITORY / "startup")
 # rmw_manycore_py.
 LAYERS = [
     ("rmw_manycore_hook", "rmw_manycore_interfaces", "rmw_manycore_receive"),
-    ("rmw_manycore_executor", "rmw_manycore_program", ".errors", ".examples"),
+    ("rmw_manycore_loading",),
+    ("rmw_manycore_executor", "rmw_manycore_fields", "rmw_manycore_program", ".errors", ".examples"),
     (".native",),
     (".process", ".ros", ".trace"),
     (".interfaces", ".platform", ".routes"),

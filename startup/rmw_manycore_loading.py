@@ -1,0 +1,64 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Changes modules of others after this process has loaded them.
+
+Imports only what Python has already imported: this runs before everything else.
+"""
+
+from __future__ import annotations
+
+import sys
+
+TYPE_CHECKING = False  # type checkers treat it as typing.TYPE_CHECKING
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from importlib.machinery import ModuleSpec
+    from types import ModuleType
+    from typing import Any
+
+    Changes = Sequence[Callable[[ModuleType], None]]
+
+
+class ChangesAfterLoading:
+    """Import hook that calls functions with modules after they are loaded."""
+
+    def __init__(self, purpose: str, changes_of: Callable[[str], Changes]) -> None:
+        self._purpose = purpose
+        self._changes_of = changes_of
+
+    @classmethod
+    def install(cls, purpose: str, changes_of: Callable[[str], Changes]) -> bool:
+        """Install a hook that asks `changes_of` about each name; False if it was there.
+
+        site.py of a virtual environment processes each .pth file twice.
+        """
+        hooks = (hook for hook in sys.meta_path if isinstance(hook, cls))
+        if any(hook._purpose == purpose for hook in hooks):
+            return False
+        sys.meta_path.insert(0, cls(purpose, changes_of))
+        return True
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Return what the other finders find, with a loader that makes the changes."""
+        changes = self._changes_of(name)
+        if not changes:
+            return None
+        for finder in sys.meta_path:
+            spec = None if finder is self else finder.find_spec(name, path, target)
+            if spec is not None and spec.loader is not None:
+                _change_when_loaded(spec.loader, changes)
+                return spec
+        return None
+
+
+def _change_when_loaded(loader: Any, changes: Changes) -> None:
+    """Patch the loader of this module so that the changes are made after loading."""
+    load = loader.exec_module
+
+    def exec_module(module: ModuleType) -> None:
+        load(module)
+        for change in changes:
+            change(module)
+
+    loader.exec_module = exec_module
