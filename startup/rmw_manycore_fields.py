@@ -4,7 +4,7 @@
 `msg.data = values` calls `array.array('B', values)` in the generated module. For numpy arrays and
 memoryviews, Python does that one element at a time. `install()` lets the name `array` of generated
 modules mean a copy of the module `array` whose type, called, copies such values at once; the result
-is the same. Message classes stay as they are. See docs/design/fields.md.
+is the same. Message classes stay as they are. See docs/how-to/large_fields.md.
 
 Imports only what Python has already imported: this runs before everything else.
 """

@@ -19,7 +19,13 @@ ROOTS = (REPOSITORY, REPOSITORY / "bridge", REPOSITORY / "startup")
 LAYERS = [
     ("rmw_manycore_hook", "rmw_manycore_interfaces", "rmw_manycore_receive"),
     ("rmw_manycore_loading",),
-    ("rmw_manycore_executor", "rmw_manycore_fields", "rmw_manycore_program", ".errors", ".examples"),
+    (
+        "rmw_manycore_executor",
+        "rmw_manycore_fields",
+        "rmw_manycore_program",
+        ".errors",
+        ".examples",
+    ),
     (".native",),
     (".process", ".ros", ".trace"),
     (".interfaces", ".platform", ".routes"),

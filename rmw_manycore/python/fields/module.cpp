@@ -3,7 +3,7 @@
 // Module _rmw_manycore_fields: the type `Array`, which stands in for `array.array` in generated
 // message modules. It passes calls on to `array.array`, except those that would copy a buffer
 // element by element: these go to a Python function first. In C++, since each message calls it
-// twice per sequence when it is constructed. See docs/design/fields.md.
+// twice per sequence when it is constructed. See docs/how-to/large_fields.md.
 #include <Python.h>
 #include <structmember.h>
 
@@ -16,15 +16,15 @@ namespace {
 constexpr Py_ssize_t min_length = 24;
 
 struct Array {
-  PyObject_HEAD
-  vectorcallfunc vectorcall;
+  PyObject_HEAD vectorcallfunc vectorcall;
   PyObject * array_type;  // array.array
-  PyObject * convert;  // (typecode, values) -> array.array, or None if array.array has to do it
+  PyObject * convert;     // (typecode, values) -> array.array, or None if array.array has to do it
 };
 
 Array * as_array(PyObject * self) { return reinterpret_cast<Array *>(self); }
 
-// Returns whether `values` is an array.array of another type code; its buffer has the code's format.
+// Returns whether `values` is an array.array of another type code; its buffer has the code's
+// format.
 bool has_other_typecode(PyObject * values, PyObject * typecode) {
   const char * wanted = PyUnicode_Check(typecode) ? PyUnicode_AsUTF8(typecode) : nullptr;
   Py_buffer buffer;
@@ -113,7 +113,14 @@ PyType_Spec spec = {
   slots};
 
 PyModuleDef definition = {
-  PyModuleDef_HEAD_INIT, "_rmw_manycore_fields", nullptr, -1, nullptr, nullptr, nullptr, nullptr,
+  PyModuleDef_HEAD_INIT,
+  "_rmw_manycore_fields",
+  nullptr,
+  -1,
+  nullptr,
+  nullptr,
+  nullptr,
+  nullptr,
   nullptr};
 
 }  // namespace
