@@ -54,7 +54,7 @@ def test_notices_come_by_kind_then_by_node(tmp_path: Path) -> None:
     of_cpus = [start for start in starts if "cores in use on" in start]  # only on a small host
     assert [start for start in starts if start not in of_cpus] == [
         "pair.launch.xml:3: 'left_out' is not in the mapf",
-        "'far' imports std_msgs/msg/Gone (one.py:2), whic",
+        "'far' imports std_msgs/msg/Gone (one.py:2), which"[:48],
         *(f"'n{number}' imports std_msgs/msg/Gone (one.py:2), which"[:48] for number in range(4)),
         "mapfile.yaml:4: nodes.far.topic_to: no source pu",
         "pair.launch.xml:2: the mapfile overrules the pre",
