@@ -30,19 +30,33 @@ LASTING = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def publish_steadily(rate_hz: float) -> None:
-    """Publish messages of random sizes, the first one once a subscription matches."""
+    """Publish messages of random sizes, the first one once a subscription matches.
+
+    A line of input renews the publisher, whose topic DSM then has its first size.
+    """
     with peer_node(f"steady_publisher_{os.getpid()}") as node:
         publisher = node.create_publisher(UInt8MultiArray, TOPIC, DEEP)
         spin_until(node, publisher.get_subscription_count)
         number = 0
+        renewal = threading.Event()
 
         def publish() -> None:
-            nonlocal number
+            nonlocal number, publisher
+            if renewal.is_set():
+                renewal.clear()
+                node.destroy_publisher(publisher)
+                publisher = node.create_publisher(UInt8MultiArray, TOPIC, DEEP)
+                announce("renewed")
             number += 1
             size_bytes = random.randrange(LARGEST_BYTES)
             publisher.publish(make_message(os.getpid(), number, size_bytes))
 
+        def listen() -> None:
+            for _ in sys.stdin:
+                renewal.set()
+
         node.create_timer(1 / rate_hz, publish)
+        threading.Thread(target=listen, daemon=True).start()
         announce(f"publishing as {os.getpid()}")
         rclpy.spin(node)
 

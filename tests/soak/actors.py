@@ -18,17 +18,23 @@ from std_srvs.srv import Trigger
 
 BURST_TOPIC = "bursts"
 SERVICE = "calls"
+RENEW = "renew"
 LARGEST_BURST_BYTES = 1_000_000
 BURST_MESSAGES = 16
 STUCK = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def publish_bursts() -> None:
-    """Publish small messages, and for each line of input a burst of large ones."""
+    """For each line of input, publish a burst of large messages, or renew the publisher."""
     with peer_node("bursts") as node:
         publisher = node.create_publisher(UInt8MultiArray, BURST_TOPIC, BURST_MESSAGES)
         announce("bursting")
-        for number, _ in enumerate(sys.stdin):
+        for number, line in enumerate(sys.stdin):
+            if line.strip() == RENEW:
+                node.destroy_publisher(publisher)
+                publisher = node.create_publisher(UInt8MultiArray, BURST_TOPIC, BURST_MESSAGES)
+                announce("renewed")
+                continue
             for _ in range(BURST_MESSAGES):
                 publisher.publish(make_message(1, number, LARGEST_BURST_BYTES))
             for _ in range(BURST_MESSAGES):

@@ -27,7 +27,7 @@ from steady_load import Load
 from support import Program, environment, leftovers, peer_command, unique_platform, wait_until
 
 from rmw_manycore_py.native._transport import Platform
-from soak.actors import ACTORS, breed_actors, publish_bursts
+from soak.actors import ACTORS, RENEW, breed_actors, publish_bursts
 from soak.growth import Record, grown
 from soak.holdings import Holdings, look
 
@@ -95,12 +95,20 @@ class Soak:
             wait_until(self._is_at_rest, "only the nodes that stay are left")
         except AssertionError:
             raise AssertionError(self._left()) from None
+        self._renew_publishers()
         self._load.assert_in_order()
         # On a busy machine the queues of the checking nodes may overflow; missing messages are
         # counted.
         assert self._load.missing() <= self._lost()
         assert "torn" not in self._nursery.output, self._nursery
         return look(self._platform, self.lasting)
+
+    def _renew_publishers(self) -> None:
+        """Let go of topic DSMs that grew beside slow readers, and shrink minutes later."""
+        for publisher in (self._bursts, self._load.publisher):
+            publisher.say(RENEW)
+            publisher.wait_for("renewed")
+        self._load.wait_until_it_goes_on()
 
     def _is_at_rest(self) -> bool:
         held = look(self._platform, self.lasting)
