@@ -11,7 +11,6 @@ Imports only what Python has already imported: this runs before everything else.
 
 from __future__ import annotations
 
-import os
 import sys
 
 from rmw_manycore_loading import ChangesAfterLoading
@@ -34,9 +33,10 @@ _array: ModuleType | None = None  # what generated modules get
 
 
 def install() -> None:
-    """Change generated modules after this process has imported them."""
-    if os.environ.get(VARIABLE) == "0":
-        return
+    """Change generated modules after this process has imported them.
+
+    rmw_manycore.pth decides by `VARIABLE` whether to call this.
+    """
     if ChangesAfterLoading.install("fields", _changes_of):
         for name, module in list(sys.modules.items()):
             if name.endswith(PACKAGES):

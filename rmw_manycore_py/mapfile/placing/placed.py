@@ -32,7 +32,10 @@ def place(
     launched: LaunchRules,
 ) -> PlacedNode:
     """Return a node on its core; `launched` are the launch file's rules."""
-    publish, subscribe = _topics_of(mapfile, name, start)
+    node = mapfile.sections.nodes[name]
+    scheduling = _scheduling(node)
+    host_cpu = host_cpus[core]
+    publish, subscribe = _topics_of(node, start)
     placed_workers = tuple((worker, host_cpus[worker]) for worker in workers)
     worker_cpus = ",".join(str(cpu) for _, cpu in placed_workers)
     worker_environment = {WORKER_CPUS: worker_cpus} if workers else {}
@@ -41,10 +44,10 @@ def place(
         full_name=start.full_name,
         cluster=core.cluster,
         core=core.core,
-        host_cpu=host_cpus[core],
-        env={**_environment(mapfile, name, core, start), **worker_environment},
+        host_cpu=host_cpu,
+        env={**_environment(mapfile, node, core, start), **worker_environment},
         cwd=_directory(mapfile, start),
-        program=() if start.missing else _program(mapfile, name, start, host_cpus[core]),
+        program=() if start.missing else _program(start, host_cpu, scheduling),
         missing="; ".join(f"expected {one.expected}, found {one.found}" for one in start.missing),
         ros_arguments=ros_arguments(start),
         parameters=start.parameters,
@@ -52,16 +55,15 @@ def place(
         publish=publish,
         subscribe=subscribe,
         workers=placed_workers,
-        rules=_rules(mapfile.sections.nodes[name], launched),
-        terminal=mapfile.sections.nodes[name].terminal,
-        scheduling=_scheduling(mapfile.sections.nodes[name]),
+        rules=_rules(node, launched),
+        terminal=node.terminal,
+        scheduling=scheduling,
     )
 
 
-def _program(mapfile: Mapfile, name: str, start: NodeStart, host_cpu: int) -> tuple[str, ...]:
+def _program(start: NodeStart, host_cpu: int, scheduling: Scheduling | None) -> tuple[str, ...]:
     """Return the command line without ROS arguments; its prefix does not undo the placement."""
     prefix = start.program.prefix
-    scheduling = _scheduling(mapfile.sections.nodes[name])
     again = placed_again(prefix, host_cpu, scheduling)
     return (*prefix, *again, *start.program.argv, *start.arguments)
 
@@ -87,7 +89,9 @@ def _directory(mapfile: Mapfile, start: NodeStart) -> Path:
     return (mapfile.path.parent / (start.directory or "")).resolve()
 
 
-def _environment(mapfile: Mapfile, name: str, core: Core, start: NodeStart) -> dict[str, str]:
+def _environment(
+    mapfile: Mapfile, node: NodeSection, core: Core, start: NodeStart
+) -> dict[str, str]:
     place = {
         "MANYCORE_PLATFORM": mapfile.platform_name,
         "MANYCORE_CLUSTER": str(core.cluster),
@@ -95,10 +99,10 @@ def _environment(mapfile: Mapfile, name: str, core: Core, start: NodeStart) -> d
     }
     env = {
         "RMW_IMPLEMENTATION": "rmw_manycore",
-        "MANYCORE_WAIT": mapfile.sections.nodes[name].wait or "block",
+        "MANYCORE_WAIT": node.wait or "block",
         "PYTHONUNBUFFERED": "1",
     }
-    if design := mapfile.sections.nodes[name].receive:
+    if design := node.receive:
         env["MANYCORE_RECEIVE"] = design
     if mapfile.sections.malloc_tuning:
         env["MALLOC_TRIM_THRESHOLD_"] = env["MALLOC_MMAP_THRESHOLD_"] = _MALLOC_THRESHOLD
@@ -109,11 +113,8 @@ def _environment(mapfile: Mapfile, name: str, core: Core, start: NodeStart) -> d
     return {**env, **asked, **place}
 
 
-def _topics_of(
-    mapfile: Mapfile, name: str, start: NodeStart
-) -> tuple[dict[str, str], dict[str, str]]:
+def _topics_of(node: NodeSection, start: NodeStart) -> tuple[dict[str, str], dict[str, str]]:
     """Return published and subscribed topics, from the mapfile and the source."""
-    node = mapfile.sections.nodes[name]
     result = []
     for key in ("publish", "subscribe"):
         written = {**getattr(start.shown, key, {}), **getattr(node, key)}

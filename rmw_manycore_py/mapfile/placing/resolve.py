@@ -77,13 +77,13 @@ def _placement(
         place(mapfile, name, start, cores[name], workers[name], host_cpus, rules[name][0])
         for name, start in starts.items()
     )
-    of_imports = check_imports(mapfile, starts)
+    import_problems, import_notices = check_imports(mapfile, starts)
     topics = topic_table(mapfile, nodes)
     memory = memory_of_clusters(mapfile, topics)
     problems = [
         *check_types(mapfile, topics),
         *check_crossing_types(mapfile, starts, topics),
-        *of_imports[0],
+        *import_problems,
         *check_memory(mapfile, memory),
         *check_sessions(mapfile, topics),
     ]
@@ -102,7 +102,7 @@ def _placement(
             *of_launch(mapfile, launch),
             *shared_cpus(len(host_cpus), len(cpus)),
             *(text for _, texts in rules.values() for text in texts),
-            *of_imports[1],
+            *import_notices,
             *unpublished(mapfile, starts, nodes),
             *refused_scheduling(nodes),
             *overruled_prefixes(starts, nodes),
