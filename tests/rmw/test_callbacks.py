@@ -222,14 +222,23 @@ def test_the_callback_of_an_event_is_called_before_a_wait_ends(node):
     wait_set = ctypes.c_void_p(rmw.rmw_create_wait_set(rmw_context, ctypes.c_size_t(1)))
 
     calls = []
-    callback = EventCallback(lambda _, count: calls.append(count))
+    began = threading.Event()
+
+    def call_slowly(_: object, count: int) -> None:
+        began.set()
+        time.sleep(0.005)  # of a wait that ends during the call, the check would come first
+        calls.append(count)
+
+    callback = EventCallback(call_slowly)
     event = ctypes.c_void_p()  # rcl_event_t holds one pointer
     assert rcl.rcl_publisher_event_init(ctypes.byref(event), handle, PUBLISHER_MATCHED) == 0
     assert rcl.rcl_event_set_callback(ctypes.byref(event), callback, None) == 0
     rmw_event = rcl.rcl_event_get_rmw_handle(ctypes.byref(event))
     status = (ctypes.c_size_t * 4)()
     for round_number in range(1, 21):
+        began.clear()
         node.create_subscription(String, "chatter", print, 10)
+        assert began.wait(TIMEOUT_S)
         waited = EventsToWaitFor(1, (ctypes.c_void_p * 1)(rmw_event))
         assert rmw.rmw_wait(None, None, None, None, ctypes.byref(waited), wait_set, None) == 0
         assert sum(calls) == round_number

@@ -20,23 +20,16 @@ void Callback::set(rmw_event_callback_t function, const void * user_data) {
   const std::lock_guard lock(reporter->mutex());
   thread_.add(reporter);
   reporter->set(function, user_data);
-  report(*reporter, turn.owns_lock());
-}
-
-void Callback::report_now() {
-  const std::shared_ptr<Reporter> reporter = reporter_;
-  const std::unique_lock turn = thread_.try_turn();
-  const std::lock_guard lock(reporter->mutex());
-  report(*reporter, turn.owns_lock());
-}
-
-/// Functions that run at the same time could wait for each other to clear their callbacks.
-void Callback::report(Reporter & reporter, bool has_turn) {
-  if (has_turn) {
-    reporter.report();
+  // Functions that run at the same time could wait for each other to clear their callbacks.
+  if (turn.owns_lock()) {
+    reporter->report();
   } else {
     thread_.look_at_all();
   }
+}
+
+bool Callback::has_called_for(uint64_t count) const noexcept {
+  return thread_.is_inherited() || reporter_->called() >= count;
 }
 
 void Callback::clear() noexcept {

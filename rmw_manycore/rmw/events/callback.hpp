@@ -25,11 +25,11 @@ public:
   /// Waits until the former function does not run, unless called from it. No effect in a child of
   /// fork().
   void set(rmw_event_callback_t function, const void * user_data);
-  /// Reports new arrivals if a function is set, likewise.
-  void report_now();
+  /// False while the function is still to be called, or running, for some of the first `count`
+  /// arrivals. True if none is set.
+  bool has_called_for(uint64_t count) const noexcept;
 
 private:
-  void report(Reporter & reporter, bool has_turn);
   void clear() noexcept;
 
   CallbackThread & thread_;

@@ -18,15 +18,14 @@ void EndpointEvents::set_callback(
   callback(type).set(function, user_data);
 }
 
-void EndpointEvents::report(rmw_event_type_t type) {
-  Callback * found = nullptr;
-  {
-    const std::lock_guard lock(mutex_);
-    found = callbacks_[type].get();
+bool EndpointEvents::ready(rmw_event_type_t type) const {
+  const uint64_t changes = counts(type).changes;
+  if (changes == told_changes_[type].load(std::memory_order_relaxed)) {
+    return false;
   }
-  if (found != nullptr) {
-    found->report_now();
-  }
+  const std::lock_guard lock(mutex_);
+  const std::unique_ptr<Callback> & callback = callbacks_[type];
+  return callback == nullptr || callback->has_called_for(changes);
 }
 
 Callback & EndpointEvents::callback(rmw_event_type_t type) {
@@ -39,7 +38,11 @@ Callback & EndpointEvents::callback(rmw_event_type_t type) {
                    const EventCounts now = counts(type);
                    return Reporter::Arrivals{now.changes, now.next_due_ns};
                  },
-                 [this, type] { return untold(type); }});
+                 [this, type] { return untold(type); },
+                 std::nullopt,
+                 0,
+                 {},
+                 [&waiters = thread_.waiters()] { waiters.notify(waiters.event_watchers()); }});
   }
   return *callbacks_[type];
 }

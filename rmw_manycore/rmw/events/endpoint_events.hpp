@@ -25,14 +25,14 @@ public:
   EndpointEvents & operator=(const EndpointEvents &) = delete;
 
   manycore::Waiters & waiters() const noexcept { return thread_.waiters(); }
-  bool ready(rmw_event_type_t type) const { return untold(type) != 0; }
+  /// There are changes to take, for all of which the callback has been called: as with other
+  /// middlewares, a wait tells of an event after its callback.
+  bool ready(rmw_event_type_t type) const;
   /// When the passage of time alone may make the event ready (CLOCK_MONOTONIC).
   int64_t next_due_ns(rmw_event_type_t type) const { return counts(type).next_due_ns; }
   /// Writes the status structure of `type` to `status` and marks its changes as reported.
   void take(rmw_event_type_t type, void * status);
   void set_callback(rmw_event_type_t type, rmw_event_callback_t function, const void * user_data);
-  /// Calls the callback now, if set, for changes that the callback thread has not reported yet.
-  void report(rmw_event_type_t type);
 
 protected:
   /// Counts of the endpoint for events of `type`. Must be thread-safe.
@@ -47,7 +47,7 @@ private:
   Callback & callback(rmw_event_type_t type);
 
   CallbackThread & thread_;
-  std::mutex mutex_;  ///< guards told_ and callbacks_; never held while user code runs
+  mutable std::mutex mutex_;  ///< guards told_ and callbacks_; never held while user code runs
   std::array<EventCounts, event_type_slots> told_;
   std::array<std::atomic<uint64_t>, event_type_slots> told_changes_{};
   std::array<std::unique_ptr<Callback>, event_type_slots> callbacks_;

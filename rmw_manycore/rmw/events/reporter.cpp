@@ -28,6 +28,12 @@ void Reporter::set(rmw_event_callback_t function, const void * user_data) {
   user_data_ = user_data;
   const uint64_t arrivals = source_.arrivals().count;
   reported_ = arrivals - std::min(source_.unread(), arrivals - reported_);
+  note_called(reported_);
+}
+
+void Reporter::clear() noexcept {
+  function_ = nullptr;
+  note_called(all);
 }
 
 int64_t Reporter::report() {
@@ -53,6 +59,17 @@ void Reporter::report_up_to(uint64_t count) {
     const uint64_t fresh = count - reported_;
     reported_ = count;
     call(fresh);
+    if (function_ != nullptr) {  // it may clear itself
+      note_called(reported_);
+    }
+  }
+}
+
+/// The store is seq_cst like all before a notification, see Watchers.
+void Reporter::note_called(uint64_t count) noexcept {
+  if (source_.notify_called) {
+    called_.store(count, std::memory_order_seq_cst);
+    source_.notify_called();
   }
 }
 

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -36,6 +37,8 @@ public:
     std::optional<MessageTopic> topic = std::nullopt;
     uint32_t endpoint = 0;              ///< slot of the subscription
     std::function<Known()> known = {};  ///< thread-safe
+    // Of events, which wake those who wait for them when the function has been called:
+    std::function<void()> notify_called = {};  ///< thread-safe; may outlive the entity
   };
 
   explicit Reporter(Source source) : source_(std::move(source)) {}
@@ -53,11 +56,15 @@ public:
 
   /// Earlier arrivals that are neither reported nor taken are to be reported next.
   void set(rmw_event_callback_t function, const void * user_data);
-  void clear() noexcept { function_ = nullptr; }
+  void clear() noexcept;
   /// Returns when the passage of time may raise the count next.
   int64_t report();
   /// Never waits. False if more may have arrived.
   bool report_known();
+
+  /// Of events: for how many the function has returned, all of them if there is none. Needs no
+  /// mutex.
+  uint64_t called() const noexcept { return called_.load(std::memory_order_seq_cst); }
 
   /// True in a function that a Reporter calls.
   static bool is_calling() noexcept;
@@ -67,12 +74,15 @@ private:
 
   void report_up_to(uint64_t count);
   void call(uint64_t arrivals);
+  void note_called(uint64_t count) noexcept;
 
+  static constexpr uint64_t all = UINT64_MAX;
   const Source source_;
   std::recursive_mutex mutex_;
   rmw_event_callback_t function_ = nullptr;
   const void * user_data_ = nullptr;
   uint64_t reported_ = 0;
+  std::atomic<uint64_t> called_{all};
   /// Position in the lists of the CallbackThread, 0: in none. Guarded by its mutex.
   uint64_t order_ = 0;
 };

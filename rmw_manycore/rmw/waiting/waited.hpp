@@ -39,15 +39,6 @@ inline Place place_of(const rmw_event_t & event) {
 
 /// As is_ready(), at the end of a wait; resets a guard condition.
 inline bool take(GuardCondition & condition) { return condition.take(); }
-/// As with other middlewares, the callback of an event has been called when a wait reports the
-/// event.
-inline bool take(rmw_event_t & event) {
-  const bool ready = is_ready(event);
-  if (ready) {
-    static_cast<EndpointEvents *>(event.data)->report(event.event_type);
-  }
-  return ready;
-}
 template<typename Entity>
 bool take(Entity & entity) {
   return is_ready(entity);
