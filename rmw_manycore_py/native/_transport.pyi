@@ -195,6 +195,10 @@ class CounterValues:
     def dropped(self) -> int:
         """Publisher: records that did not reach a cluster they were transferred to."""
 
+    @property
+    def held(self) -> int:
+        """Subscription: messages that were read in place, and not copied."""
+
 class EndpointInfo:
     """A publisher or subscription of a topic, or of a service's requests or replies."""
 

@@ -194,11 +194,11 @@ TEST_CASE("a block that changes hands when its process dies has one owner after 
   Inspection inspection(platform);
   Registry & registry = inspection.registry();
   const auto publisher = process->create_publisher(on_topic("/x", keep_last(1)));
-  publish(*publisher, 1, 1 << 20);
+  publish(*publisher, 1, 60'000);
   const uint64_t used = inspection.used_bytes();
   Hand & hand = *registry.own_hand();
   for (const GenerationEntry & entry : inspection.header_of(*publisher).generations) {
-    if (entry.offset.load() != 0 && entry.extent_bytes() > 1 << 20) {
+    if (entry.offset.load() != 0 && entry.extent_bytes() > 60'000) {
       hand.bytes.store(entry.extent_bytes());
       hand.block.store(SegmentRef::make(1, entry.offset.load()).word);
     }

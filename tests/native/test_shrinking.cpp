@@ -137,7 +137,7 @@ TEST_CASE("a generation that a reader may access is closed, but not freed") {
   const uint32_t incarnation = f.inspection.registry().endpoints()[slot].slot.incarnation;
   // As of a reader that was stopped before it looked up its record.
   reading.store(Reading::of({slot, incarnation, 1}));
-  publish(*publisher, 2, 100'000);  // grows
+  publish(*publisher, 2, 60'000);  // grows
   for (uint64_t number = 3; number <= 10 && old.first.load() != 0; ++number) {
     publish(*publisher, number);
   }

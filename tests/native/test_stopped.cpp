@@ -40,7 +40,7 @@ const Role large_publisher("large_publisher", [](Lines & test, const Arguments &
   const auto publisher = process->create_publisher(on_topic("/growing", keep_last(1)));
   test.say("ready");
   test.hear();
-  const Refusal refusal = refusal_of([&] { publish(*publisher, 1, 100'000); });
+  const Refusal refusal = refusal_of([&] { publish(*publisher, 1, 60'000); });
   test.say(refusal.code ? refusal.text : "published");
 });
 
@@ -224,12 +224,12 @@ TEST_CASE(
   // Each publish finds a wanted record in its way. Waiting for the lock each time would take longer
   // than Node::tell() waits.
   node.tell("publish 1 2000 100");
-  const Refusal refusal = refusal_of([&] { publish(*publisher, 1, 100'000); });
+  const Refusal refusal = refusal_of([&] { publish(*publisher, 1, 60'000); });
   CHECK(refusal.code == ErrorCode::timeout);
   CHECK_MESSAGE(refusal.says("registry stayed locked"), refusal.text);
   CHECK(f.inspection.generations_of(*publisher) == 1);
   holder.kill();
-  publish(*publisher, 2, 100'000);
+  publish(*publisher, 2, 60'000);
   CHECK(f.inspection.generations_of(*publisher) == 2);
   node.tell("publish 2001 2100 100");
   take_all(*near);

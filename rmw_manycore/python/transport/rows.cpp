@@ -85,7 +85,8 @@ void bind_counter_values(nb::module_ & module) {
     .def_ro("expired", &CounterValues::expired)
     .def_ro("refused", &CounterValues::refused)
     .def_ro("overwritten", &CounterValues::overwritten)
-    .def_ro("dropped", &CounterValues::dropped);
+    .def_ro("dropped", &CounterValues::dropped)
+    .def_ro("held", &CounterValues::held);
 }
 
 void bind_endpoint_info(nb::module_ & module) {

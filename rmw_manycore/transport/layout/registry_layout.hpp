@@ -104,6 +104,7 @@ struct EndpointCounters {
   /// Publisher: records recycled while a reader still wanted them.
   std::atomic<uint64_t> overwritten;
   std::atomic<uint64_t> dropped;  ///< publisher: records that did not reach a cluster
+  std::atomic<uint64_t> held;     ///< subscription: messages that were held, and not copied
 };
 
 /// A publisher or subscription.
@@ -137,7 +138,7 @@ struct EndpointEntry {
   char type[name_bytes];
 };
 static_assert(
-  sizeof(EndpointEntry) == 728 && offsetof(EndpointEntry, topic_hash) == 40 &&
+  sizeof(EndpointEntry) == 736 && offsetof(EndpointEntry, topic_hash) == 40 &&
   offsetof(EndpointEntry, counters) == 160);
 
 /// One line of the topic table (ROS-lite2 Fig. 7).

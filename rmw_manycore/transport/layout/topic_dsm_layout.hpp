@@ -2,6 +2,7 @@
 #pragma once
 
 #include "platform/futex.hpp"
+#include "transport/layout/chunk_layout.hpp"
 #include "transport/layout/endpoint.hpp"
 #include "transport/layout/entry_blocks.hpp"
 #include "transport/layout/seat.hpp"
@@ -12,12 +13,20 @@ namespace manycore {
 constexpr uint32_t max_generations = 8;
 constexpr uint64_t no_record = 0;  ///< record numbers start at 1
 
+/// Where the bytes of a record lie.
+enum class RecordMemory : uint32_t {
+  ring,
+  chunk,
+  /// In a chunk, and one subscription only has been, or will ever be, owed the record.
+  chunk_of_one_reader,
+};
+
 /// One record of a topic DSM. Written by the publisher; a reader accesses it only under its claim.
 struct alignas(64) RecordDescriptor {
   std::atomic<uint64_t> number;  ///< no_record while free or being rewritten
   uint64_t offset;               ///< of the CDR bytes, in the publisher's cluster segment
   uint32_t size_bytes;
-  uint32_t reserved;
+  std::atomic<RecordMemory> memory;
   int64_t source_timestamp_ns;           ///< CLOCK_REALTIME at publish
   uint64_t publication_sequence_number;  ///< of replies: among those to the same client
   Correlation correlation;
@@ -51,7 +60,7 @@ struct GenerationEntry {
 };
 static_assert(sizeof(GenerationEntry) == 32);
 
-constexpr uint32_t seats_in_header = 15;
+constexpr uint32_t seats_in_header = 14;
 
 /// Head of a topic DSM: one writer, many readers.
 struct TopicDsmHeader {
@@ -82,6 +91,7 @@ struct TopicDsmHeader {
 
   alignas(64) GenerationEntry generations[max_generations];
   EntryBlocks further_seats;
+  EntryBlocks chunks;
   Seat seats[seats_in_header];
 };
 static_assert(sizeof(TopicDsmHeader) == 1536 && offsetof(TopicDsmHeader, gid) == 40);

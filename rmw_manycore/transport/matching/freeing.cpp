@@ -5,6 +5,7 @@
 #include "transport/matching/orphans.hpp"
 #include "transport/peers/endpoint_terms.hpp"
 #include "transport/registry/topic_rows.hpp"
+#include "transport/topic_dsm/chunk_table.hpp"
 #include "transport/topic_dsm/generation.hpp"
 #include "transport/topic_dsm/seat_table.hpp"
 #include "transport/topic_dsm/waiting_publisher.hpp"
@@ -75,8 +76,8 @@ bool take_up_generations(const Cluster & cluster, TopicDsmHeader & dsm, BlockInH
 }
 
 /// Last block first. False once the hand is full.
-bool take_up_seats(const Cluster & cluster, TopicDsmHeader & dsm, BlockInHand & hand) {
-  const EntryTable<Seat> table = further_seats(cluster, dsm);
+template<typename Entry>
+bool take_up_table(const Cluster & cluster, const EntryTable<Entry> & table, BlockInHand & hand) {
   while (const auto last = table.last()) {
     hand.take_up(SegmentRef::make(cluster.id(), last->offset), last->bytes);
     table.drop_last();
@@ -85,6 +86,24 @@ bool take_up_seats(const Cluster & cluster, TopicDsmHeader & dsm, BlockInHand & 
     }
   }
   return true;
+}
+
+/// Chunks that a process holds stay: it wakes the reaper when it gives one back, or is reaped.
+Progress take_up_chunks(
+  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, BlockInHand & hand) {
+  Progress progress = Progress::none_left;
+  chunks_of(cluster, dsm).visit([&](ChunkEntry & entry) {
+    const uint64_t offset = entry.offset.load();
+    const auto * const head = offset == 0 ? nullptr : cluster.find<ChunkHead>(offset);
+    if (head != nullptr && is_held(registry, *head)) {
+      progress = Progress::kept;
+    } else if (offset != 0) {
+      chunk::take_up(cluster, entry, hand);
+      progress = hand.is_empty() ? progress : Progress::some_left;
+    }
+    return progress == Progress::some_left;
+  });
+  return progress;
 }
 
 /// True if a live subscription of that cluster reads the publisher.
@@ -194,10 +213,19 @@ Progress free_publisher(
       return progress;
     }
   }
-  const bool is_head_left = transfer::take_up_all(registry, *cluster, *dsm, hand) &&
-                            take_up_generations(*cluster, *dsm, hand) &&
-                            take_up_seats(*cluster, *dsm, hand);
-  return is_head_left ? take_up_head(entry, header_bytes(*dsm), hand) : Progress::some_left;
+  if (
+    !transfer::take_up_all(registry, *cluster, *dsm, hand) ||
+    !take_up_generations(*cluster, *dsm, hand) ||
+    !take_up_table(*cluster, further_seats(*cluster, *dsm), hand)) {
+    return Progress::some_left;
+  }
+  const Progress of_chunks = take_up_chunks(registry, *cluster, *dsm, hand);
+  if (of_chunks != Progress::none_left) {
+    return of_chunks;
+  }
+  return take_up_table(*cluster, chunks_of(*cluster, *dsm), hand)
+           ? take_up_head(entry, header_bytes(*dsm), hand)
+           : Progress::some_left;
 }
 
 Progress free_subscription(Registry & registry, uint32_t endpoint, BlockInHand & hand) {

@@ -7,6 +7,7 @@
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/registry/registry.hpp"
 #include "transport/registry/snapshot.hpp"
+#include "transport/topic_dsm/chunk_table.hpp"
 #include "transport/topic_dsm/seat_table.hpp"
 #include "transport/transfer/transfer.hpp"
 
@@ -32,6 +33,13 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
       }
     }
     further_seats(*cluster, *dsm).visit_memory(mark);
+    chunks_of(*cluster, *dsm).visit_memory(mark);
+    chunks_of(*cluster, *dsm).visit([&](ChunkEntry & chunk) {
+      if (chunk.offset.load() != 0) {
+        mark(chunk.offset.load(), chunk.bytes.load());
+      }
+      return false;
+    });
   } else {
     auto * const subscription = cluster->find<SubscriptionHeader>(entry.block.offset());
     if (subscription == nullptr) {

@@ -13,7 +13,7 @@ namespace {
 CounterValues values_of(const EndpointCounters & counters) {
   return {counters.messages.load(), counters.bytes.load(),   counters.lost.load(),
           counters.expired.load(),  counters.refused.load(), counters.overwritten.load(),
-          counters.dropped.load()};
+          counters.dropped.load(),  counters.held.load()};
 }
 
 Activity activity_of(Registry & registry, const EndpointEntry & entry) {

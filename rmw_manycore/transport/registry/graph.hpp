@@ -30,6 +30,7 @@ struct CounterValues {
   uint64_t refused = 0;      ///< publisher: messages that did not fit
   uint64_t overwritten = 0;  ///< publisher: records recycled while a reader still wanted them
   uint64_t dropped = 0;      ///< publisher: records that did not reach a cluster
+  uint64_t held = 0;         ///< subscription: messages that were held, and not copied
 };
 
 /// A process in a snapshot of the graph.
@@ -77,7 +78,7 @@ struct Activity {
   uint64_t capacity = 0;  ///< subscription: queue capacity in hints
   uint64_t deadlines_missed = 0;  ///< subscription: missed periods of the requested deadline
 };
-static_assert(sizeof(Activity) == 88);
+static_assert(sizeof(Activity) == 96);
 
 /// Consistent snapshots of the platform's processes, clusters, nodes and endpoints. Takes no
 /// registry lock. Thread-safe; not for use on the data path.

@@ -34,6 +34,20 @@ Claim::~Claim() {
   }
 }
 
+std::optional<Hold> Claim::hold() noexcept {
+  Subscription::Impl & impl = *subscription_.impl_;
+  if (chunk_ == nullptr || impl.membership.is_inherited() || !impl.holds.may_take(impl.entry.qos)) {
+    return std::nullopt;
+  }
+  std::optional<Hold> hold = Hold::take(
+    {impl.registry, source_.cluster(), source_.row(), impl.entry.process.load()}, *chunk_,
+    {data_, size_}, is_for_one_reader_, impl.holds);
+  if (hold) {
+    impl.entry.counters.held.fetch_add(1, std::memory_order_relaxed);
+  }
+  return hold;
+}
+
 void Claim::reject() noexcept {
   Subscription::Impl & impl = *subscription_.impl_;
   impl.counts.count_rejected(size_);

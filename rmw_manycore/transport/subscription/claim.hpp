@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 
 #include "platform/handover_mutex.hpp"
 #include "transport/layout/endpoint.hpp"
+#include "transport/subscription/hold.hpp"
 
 namespace manycore {
 
@@ -38,6 +40,10 @@ public:
   size_t size() const noexcept { return size_; }
   const RecordInfo & info() const noexcept { return info_; }
 
+  /// Keeps the bytes in place after this claim. Nothing where the record lies in the ring, as small
+  /// ones do, or where too many are held: then copy.
+  std::optional<Hold> hold() noexcept;
+
   /// Counts the record as lost instead of taken, because its bytes could not be deserialized.
   void reject() noexcept;
 
@@ -54,6 +60,8 @@ private:
   const uint8_t * data_ = nullptr;
   size_t size_ = 0;
   RecordInfo info_;
+  ChunkHead * chunk_ = nullptr;
+  bool is_for_one_reader_ = false;
 };
 
 }  // namespace manycore

@@ -118,6 +118,8 @@ std::optional<Claim> Subscription::claim() {
     }
     Claim claim(*this, std::move(lock), source, view.number);
     claim.data_ = view.data;
+    claim.chunk_ = view.chunk;
+    claim.is_for_one_reader_ = view.is_for_one_reader;
     claim.size_ = view.record->size_bytes;
     claim.info_.source_timestamp_ns = view.record->source_timestamp_ns;
     claim.info_.received_timestamp_ns = realtime_ns();

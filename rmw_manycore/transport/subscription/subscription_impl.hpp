@@ -4,6 +4,7 @@
 #include "platform/handover_mutex.hpp"
 #include "transport/peers/matches.hpp"
 #include "transport/registry/membership.hpp"
+#include "transport/subscription/hold.hpp"
 #include "transport/subscription/record_finder.hpp"
 #include "transport/subscription/subscription.hpp"
 
@@ -35,6 +36,7 @@ struct Subscription::Impl {
   Membership membership;
   Cluster & cluster;
   SubscriptionHeader & header;
+  HeldCount holds;
   HandoverMutex mutex;  ///< held during the lifetime of a Claim
   ReceptionCounts counts;
   RecordFinder finder;

@@ -5,6 +5,7 @@
 
 #include "platform/clock.hpp"
 #include "transport/queue/subscriber_queue.hpp"
+#include "transport/topic_dsm/chunk_table.hpp"
 #include "transport/topic_dsm/last_published.hpp"
 #include "transport/topic_dsm/waiting_publisher.hpp"
 
@@ -184,6 +185,9 @@ Source::ClaimResult Source::look_at(uint64_t number, View & view) noexcept {
   }
   view.record = &record;
   view.data = data;
+  const RecordMemory memory = record.memory.load(std::memory_order_acquire);
+  view.chunk = memory == RecordMemory::ring ? nullptr : chunk_head(*cluster_, record.offset);
+  view.is_for_one_reader = memory == RecordMemory::chunk_of_one_reader;
   return ClaimResult::claimed;
 }
 

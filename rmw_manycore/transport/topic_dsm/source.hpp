@@ -48,6 +48,8 @@ public:
     const RecordDescriptor * record = nullptr;
     const uint8_t * data = nullptr;
     uint64_t number = no_record;
+    ChunkHead * chunk = nullptr;  ///< of the record, unless it lies in the ring
+    bool is_for_one_reader = false;
   };
   struct Claimed {
     ClaimResult result;
@@ -84,6 +86,8 @@ public:
   Settled settle() noexcept;
 
   const Gid & publisher() const noexcept { return dsm_->gid; }
+  const Slot & row() const noexcept { return row_->slot; }
+  const Cluster & cluster() const noexcept { return *cluster_; }
   uint32_t publisher_process() const noexcept { return dsm_->process; }
 
 private:

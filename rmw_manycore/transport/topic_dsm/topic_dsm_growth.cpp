@@ -187,7 +187,7 @@ bool TopicDsmWriter::start_generation(uint64_t data_bytes, uint64_t descriptor_c
 /// New size: twice the peak usage, if that is at most half of the present size. A ring whose usage
 /// stays the same neither grows nor shrinks.
 void TopicDsmWriter::shrink(uint64_t need_bytes) noexcept {
-  demand_.note(blocks_.size() + 1, blocks_.bytes() + need_bytes);
+  demand_.note(held_records() + 1, blocks_.bytes() + need_bytes);
   const uint64_t bytes = std::max(first_data_bytes, 2 * demand_.bytes());
   const uint64_t records =
     std::max(first_descriptor_count, power_of_two_at_least(2 * demand_.records()));
@@ -229,8 +229,9 @@ uint64_t TopicDsmWriter::deepest_history() const noexcept {
 /// the records if they are large. At least half as many bytes again, because records of mixed sizes
 /// leave gaps.
 bool TopicDsmWriter::grow_to_hold_more(uint64_t need_bytes) {
-  const uint64_t held = std::max<uint64_t>(blocks_.size(), 1);
-  const uint64_t bytes_per_record = std::max(need_bytes, blocks_.bytes() / held);
+  const uint64_t held = std::max<uint64_t>(held_records(), 1);
+  const uint64_t in_ring = std::max<uint64_t>(blocks_.size(), 1);
+  const uint64_t bytes_per_record = std::max(need_bytes, blocks_.bytes() / in_ring);
   const uint64_t factor = held * bytes_per_record < many_bytes ? 4 : 2;
   const uint64_t records =
     std::max(held + factor / 2, std::min(held * factor, deepest_history() + 2));

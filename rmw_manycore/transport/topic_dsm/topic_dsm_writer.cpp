@@ -2,6 +2,7 @@
 #include "transport/topic_dsm/topic_dsm_writer.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
@@ -128,8 +129,8 @@ bool TopicDsmWriter::is_wanted(uint64_t number, const RecordDescriptor & record)
 }
 
 /// RELIABLE + KEEP_ALL, and a reliable reader still wants the record: it must not be overwritten.
-bool TopicDsmWriter::is_owed(uint64_t number) const noexcept {
-  const RecordDescriptor & record = current_.descriptor(number);
+bool TopicDsmWriter::is_owed(uint64_t number) noexcept {
+  const RecordDescriptor & record = *find_descriptor(number);
   const Readers readers = readers_of(record);
   return dsm_.keep_all != 0 && endpoint_.qos.reliability == Reliability::reliable &&
          std::any_of(readers.begin(), readers.end(), [&](const Reader & reader) {
@@ -292,6 +293,10 @@ TopicDsmWriter::Room TopicDsmWriter::find_room(uint64_t size_bytes) {
     free_old_generations();
   }
   reclaim_free_records();
+  free_idle_chunks();
+  if (goes_to_chunk(size_bytes)) {
+    return find_chunk_room(size_bytes);
+  }
   if (demand_.is_known()) {
     shrink(need);
   }
@@ -307,12 +312,16 @@ TopicDsmWriter::Room TopicDsmWriter::find_room(uint64_t size_bytes) {
         "' is full of records that are being read; a message of " + std::to_string(size_bytes) +
         " bytes needs a topic_dsm_size of at least " + std::to_string(current_.data_bytes + need));
   }
-  demand_.note(blocks_.size(), blocks_.bytes());
+  demand_.note(held_records(), blocks_.bytes());
   const Block & block = blocks_.back();
   return {cluster_.find<uint8_t>(current_.data_offset) + block.begin, block.end - block.begin};
 }
 
 void TopicDsmWriter::abandon_room() noexcept {
+  if (std::exchange(is_chunk_in_work_, false)) {
+    chunks_.put_back_newest();
+    return;
+  }
   cursor_ = blocks_.back().begin;
   blocks_.pop_back();
 }
@@ -337,15 +346,23 @@ void TopicDsmWriter::announce_reply(const RecordDescriptor & record) const noexc
   }
 }
 
-uint64_t TopicDsmWriter::commit(
-  uint64_t size_bytes, int64_t source_timestamp_ns, uint64_t publication_sequence_number,
-  const Correlation & correlation) {
+/// Ends the room in the ring with the bytes used. Returns their offset.
+uint64_t TopicDsmWriter::use_block(uint64_t size_bytes) noexcept {
   Block & block = blocks_.back();
   blocks_.shrink_back(block.begin + align_up(std::max<uint64_t>(size_bytes, 1), record_alignment));
   block.number = next_number_;
   cursor_ = block.end;
+  return current_.data_offset + block.begin;
+}
+
+uint64_t TopicDsmWriter::commit(
+  uint64_t size_bytes, int64_t source_timestamp_ns, uint64_t publication_sequence_number,
+  const Correlation & correlation) {
   RecordDescriptor & record = current_.descriptor(next_number_);
-  record.offset = current_.data_offset + block.begin;
+  const bool is_in_chunk = is_chunk_in_work_;
+  record.offset = is_in_chunk ? use_chunk() : use_block(size_bytes);
+  record.memory.store(
+    is_in_chunk ? RecordMemory::chunk : RecordMemory::ring, std::memory_order_relaxed);
   record.size_bytes = static_cast<uint32_t>(size_bytes);
   record.source_timestamp_ns = source_timestamp_ns;
   record.publication_sequence_number = publication_sequence_number;
@@ -366,6 +383,9 @@ uint64_t TopicDsmWriter::commit(
   readers_.refresh(start());
   if (!readers_.is_complete()) {
     readers_.serve_without_list(start());
+  }
+  if (is_in_chunk && has_one_reader()) {
+    record.memory.store(RecordMemory::chunk_of_one_reader, std::memory_order_release);
   }
   last_number_ = next_number_;
   last_sequence_number_ = publication_sequence_number;

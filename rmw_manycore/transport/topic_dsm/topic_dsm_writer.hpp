@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "transport/topic_dsm/block_ring.hpp"
+#include "transport/topic_dsm/chunk_pool.hpp"
 #include "transport/topic_dsm/demand.hpp"
 #include "transport/topic_dsm/generation.hpp"
 #include "transport/topic_dsm/reader_list.hpp"
@@ -64,9 +65,11 @@ private:
     return {last_number_, is_of_replies() ? 0 : last_sequence_number_};
   }
   void number_reply(RecordDescriptor & record) const noexcept;
+  uint64_t use_block(uint64_t size_bytes) noexcept;
+  uint64_t use_chunk() noexcept;
   void announce_reply(const RecordDescriptor & record) const noexcept;
   bool is_wanted(uint64_t number, const RecordDescriptor & record) const noexcept;
-  bool is_owed(uint64_t number) const noexcept;
+  bool is_owed(uint64_t number) noexcept;
   Reclaim reclaim(uint64_t number, bool force);
   void reclaim_free_records();
   bool drain(Generation & old);
@@ -101,6 +104,24 @@ private:
   std::string refusal_text(uint64_t need_bytes) const;
   void wait_for_progress(uint64_t number);
   uint64_t data_limit() const noexcept;
+  /// Records that readers want or read, and that no room is taken from.
+  uint64_t held_records() const noexcept { return blocks_.size() + chunks_.in_use(); }
+  // In topic_dsm_chunks.cpp:
+  bool goes_to_chunk(uint64_t size_bytes) const noexcept;
+  Room find_chunk_room(uint64_t size_bytes);
+  ChunkPool::State state_of(const Block & chunk);
+  RecordDescriptor * find_descriptor(uint64_t number) noexcept;
+  /// Room for a chunk of `bytes`, made by overwriting or waiting if SMEM is short.
+  Block get_chunk(uint64_t message_bytes, uint64_t bytes);
+  Block make_chunk(uint64_t bytes);
+  bool free_chunk(const Block & chunk) noexcept;
+  bool free_idle_chunk(uint64_t records) noexcept;
+  void free_idle_chunks();
+  bool free_unused_chunks() noexcept;
+  void give_up_record(uint64_t number);
+  ChunkEntry & free_chunk_entry();
+  [[noreturn]] void refuse_chunk(uint64_t message_bytes, const Error & error);
+  bool has_one_reader() const noexcept;
 
   Registry & registry_;
   Cluster & cluster_;
@@ -110,10 +131,13 @@ private:
   Generation current_;
   std::vector<Generation> old_;
   BlockRing blocks_;
+  ChunkPool chunks_;
+  bool is_chunk_in_work_ = false;  ///< the room of the last find_room() is chunks_.newest()
   Demand demand_;
   /// By descriptor: number that a reader may still have pinned, or no_record.
   std::vector<uint64_t> pinned_in_slot_;
-  uint64_t cursor_ = 0;  ///< offset of the next free byte in the data area
+  uint64_t chunk_bytes_ = 0;  ///< needed by the last large message
+  uint64_t cursor_ = 0;       ///< offset of the next free byte in the data area
   uint64_t next_number_ = 1;
   uint64_t last_number_ = no_record;
   uint64_t last_sequence_number_ = 0;

@@ -59,6 +59,7 @@ def counters_row(counters: _transport.CounterValues) -> dict[str, int]:
         "refused": counters.refused,
         "overwritten": counters.overwritten,
         "dropped": counters.dropped,
+        "held": counters.held,
     }
 
 

@@ -16,10 +16,20 @@ from rmw_manycore_py.platform.monitor.graph import Graph
 Counts = NDArray[np.int64]
 
 # Columns of an activity row, after the endpoint.
-MESSAGES, BYTES, LOST, EXPIRED, REFUSED, OVERWRITTEN, DROPPED, QUEUED, CAPACITY, DEADLINES = range(
-    10
-)
-_WORDS = 11
+(
+    MESSAGES,
+    BYTES,
+    LOST,
+    EXPIRED,
+    REFUSED,
+    OVERWRITTEN,
+    DROPPED,
+    HELD,
+    QUEUED,
+    CAPACITY,
+    DEADLINES,
+) = range(11)
+_WORDS = 12
 
 
 @dataclass(frozen=True)

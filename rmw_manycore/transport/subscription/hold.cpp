@@ -1,0 +1,87 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/subscription/hold.hpp"
+
+#include <utility>
+
+#include "transport/topic_dsm/chunk_table.hpp"
+
+namespace manycore {
+namespace {
+
+/// Takes a word that is free, or of a process that has ended.
+std::atomic<uint64_t> * take_word(Registry & registry, ChunkHead & chunk, uint64_t own) noexcept {
+  for (std::atomic<uint64_t> & word : chunk.holders) {
+    uint64_t holder = word.load(std::memory_order_relaxed);
+    if (
+      !is_holding(registry, holder) &&
+      word.compare_exchange_strong(holder, own, std::memory_order_seq_cst)) {
+      return &word;
+    }
+  }
+  return nullptr;
+}
+
+bool is_held_beside(Registry & registry, const ChunkHead & chunk, const void * own) noexcept {
+  for (const std::atomic<uint64_t> & word : chunk.holders) {
+    if (&word != own && is_holding(registry, word.load(std::memory_order_seq_cst))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+std::optional<Hold> Hold::take(
+  const Holder & holder, ChunkHead & chunk, const Bytes & bytes, bool is_for_one_reader,
+  const HeldCount & count) noexcept {
+  // The publisher needs room for what is to come: messages are copied while SMEM is scarce.
+  if (holder.cluster.used_bytes() > holder.cluster.size() / 2) {
+    return std::nullopt;
+  }
+  const Slot & process = holder.registry.processes()[holder.process].slot;
+  const uint64_t own = endpoint_word(holder.process, process.incarnation.load());
+  std::atomic<uint64_t> * const word = take_word(holder.registry, chunk, own);
+  if (word == nullptr) {
+    return std::nullopt;
+  }
+  // A reader that has left may still hold the record that another one was owed alone.
+  const bool is_sole = is_for_one_reader && !is_held_beside(holder.registry, chunk, word);
+  return Hold(holder, *word, bytes, is_sole, count.count_);
+}
+
+Hold::Hold(
+  const Holder & holder, std::atomic<uint64_t> & word, const Bytes & bytes, bool is_sole,
+  std::shared_ptr<std::atomic<uint32_t>> count) noexcept
+: cluster_(holder.cluster),
+  publisher_(holder.publisher),
+  word_(&word),
+  bytes_(bytes),
+  is_sole_(is_sole),
+  count_(std::move(count)) {
+  count_->fetch_add(1, std::memory_order_relaxed);
+}
+
+Hold::Hold(Hold && other) noexcept
+: cluster_(other.cluster_),
+  publisher_(other.publisher_),
+  word_(std::exchange(other.word_, nullptr)),
+  bytes_(other.bytes_),
+  is_sole_(other.is_sole_),
+  count_(std::move(other.count_)),
+  side_(other.side_) {}
+
+/// Dekker with the process that frees the topic DSM of a closed publisher: it stores the row's
+/// state before it loads the word.
+Hold::~Hold() {
+  if (word_ == nullptr || side_.is_inherited()) {
+    return;
+  }
+  count_->fetch_sub(1, std::memory_order_relaxed);
+  word_->store(0, std::memory_order_seq_cst);
+  if (publisher_.state.load(std::memory_order_seq_cst) != SlotState::live) {
+    cluster_.wake_reaper();
+  }
+}
+
+}  // namespace manycore
