@@ -31,7 +31,7 @@ def endpoint(number: int, kind: Any, topic: str = "/t", role: Any = "topic") -> 
 
 def sample(time_s: float, rows: list[tuple[Endpoint, list[int]]], cpu_ns: dict[int, int]) -> Sample:
     graph = Graph("p", 5, 16, 1 << 20, (TALKER, LISTENER), tuple(end for end, _ in rows))
-    counts = np.zeros((len(rows), 10), dtype=np.int64)
+    counts = np.zeros((len(rows), 11), dtype=np.int64)
     for row, values in enumerate(values for _, values in rows):
         counts[row, : len(values)] = values
     cluster: Any = SimpleNamespace(id=1, messages=int(10 * time_s), receive_thread_pid=9)
@@ -47,7 +47,7 @@ LOADS = Loads(
         [
             (SERVICE, [100, 100]),
             (B, [2, 20]),
-            (C, [3, 30, 4, 0, 0, 0, 0, 3, 10, 2]),
+            (C, [3, 30, 4, 0, 0, 0, 0, 0, 3, 10, 2]),
             (A, [9, 90]),
         ],
         {70: 1_500_000_000, 71: 7},
