@@ -381,6 +381,20 @@ class Platform:
         trace: TracebackType | None,
     ) -> None: ...
 
+class Loan:
+    """Room for one message in shared memory, until it is published or given back.
+
+    Writable through the buffer protocol behind the head of the message. What views it, as
+    `memoryview(loan)`, keeps it from being published.
+    """
+
+    def __buffer__(self, flags: int, /) -> memoryview: ...
+    def publish(self) -> int:
+        """Publish the message and return its sequence number; BufferError while it is viewed."""
+
+    def give_back(self) -> None:
+        """Publish nothing; BufferError while the room is viewed."""
+
 class Publisher:
     """Publishes serialized messages."""
 
@@ -406,6 +420,9 @@ class Publisher:
 
     def publish_parts(self, head: bytes, body: Buffer) -> int:
         """Publish a message of two parts, the second contiguous; return its sequence number."""
+
+    def lend(self, head: bytes, body_bytes: int) -> Loan | None:
+        """Lend room for a message; None where the topic's records lie in a ring of fixed size."""
 
     def matched(self) -> int:
         """Return the number of subscriptions it is matched with."""

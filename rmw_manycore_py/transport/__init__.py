@@ -20,6 +20,7 @@ from rmw_manycore_py.transport.errors import (
     TransportError,
     TransportTimeoutError,
 )
+from rmw_manycore_py.transport.loan import Loan
 from rmw_manycore_py.transport.member import Member, join
 from rmw_manycore_py.transport.message import Message
 from rmw_manycore_py.transport.publisher import Publisher
@@ -27,6 +28,7 @@ from rmw_manycore_py.transport.qos import Qos
 from rmw_manycore_py.transport.subscription import Subscription
 
 __all__ = [
+    "Loan",
     "Member",
     "Message",
     "MessageInUseError",

@@ -15,12 +15,12 @@ encapsulation.
 from __future__ import annotations
 
 import math
+import operator
 import struct
 from collections.abc import Sequence
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from typing_extensions import Buffer
 
 from rmw_manycore_py.transport.errors import TransportError, refusal
@@ -66,22 +66,36 @@ def checked_dtype(dtype: Any) -> np.dtype[Any]:
     return known
 
 
-def head_of(array: NDArray[Any]) -> bytes:
+def checked_shape(shape: Any) -> tuple[int, ...]:
+    """Return a shape as numpy has it: an integer is one dimension.
+
+    :raises TransportError: if a size is no integer, or negative.
+    """
+    try:
+        sizes = tuple(operator.index(size) for size in np.atleast_1d(np.asarray(shape)).tolist())
+    except (TypeError, ValueError):
+        sizes = (-1,)
+    if min(sizes, default=0) < 0:
+        raise refusal("shape", "an integer, or a tuple of integers, from 0", repr(shape))
+    return sizes
+
+
+def head_of(shape: tuple[int, ...], itemsize: int) -> bytes:
     """Return the bytes of an array's message before its elements.
 
     :raises TransportError: if no message can hold an array of this shape.
     """
-    shape = array.shape
-    if not 1 <= array.ndim <= MAX_DIMENSIONS:
+    count = math.prod(shape)
+    if not 1 <= len(shape) <= MAX_DIMENSIONS:
         raise refusal("array", f"1 to {MAX_DIMENSIONS} dimensions", f"shape {shape}")
-    if array.nbytes > MAX_MESSAGE_BYTES - 1024 or max(shape) > MAX_MESSAGE_BYTES:
-        raise refusal("array", "less than 4 GiB", f"{array.nbytes} bytes in shape {shape}")
-    parts = [_LITTLE_ENDIAN + b"\0\0", struct.pack("<I", array.ndim)]
+    if count * itemsize > MAX_MESSAGE_BYTES - 1024 or max(shape) > MAX_MESSAGE_BYTES:
+        raise refusal("array", "less than 4 GiB", f"{count * itemsize} bytes in shape {shape}")
+    parts = [_LITTLE_ENDIAN + b"\0\0", struct.pack("<I", len(shape))]
     for axis, size in enumerate(shape):
         stride = min(math.prod(shape[axis:]), MAX_MESSAGE_BYTES)
         parts += [_EMPTY_LABEL.pack(1), _DIMENSION.pack(size, stride)]
-    parts.append(_TAIL.pack(0, array.size))
-    if array.itemsize == 8 and array.size:
+    parts.append(_TAIL.pack(0, count))
+    if itemsize == 8 and count:
         parts.append(b"\0\0\0\0")
     return b"".join(parts)
 

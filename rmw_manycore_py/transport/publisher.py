@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Generic
 
 import numpy as np
@@ -17,7 +18,8 @@ from rmw_manycore_py.transport.errors import (
     native_errors,
     refusal,
 )
-from rmw_manycore_py.transport.multi_array import Scalar, head_of
+from rmw_manycore_py.transport.loan import Loan, array_in
+from rmw_manycore_py.transport.multi_array import Scalar, checked_shape, head_of
 
 MAX_SUBSCRIPTIONS = 32_768
 
@@ -60,7 +62,33 @@ class Publisher(Closing, Generic[Scalar]):
         native = self._opened()
         contiguous = self._checked(array)
         with native_errors(self.topic):
-            return native.publish_parts(head_of(contiguous), contiguous.data)
+            head = head_of(contiguous.shape, contiguous.itemsize)
+            return native.publish_parts(head, contiguous.data)
+
+    def lend(self, shape: int | tuple[int, ...]) -> Loan[Scalar]:
+        """Lend an array in shared memory, which is published without a copy.
+
+        ```python
+        with images.lend((1080, 1920, 3)) as loan:
+            camera.read_into(loan.array)
+        ```
+
+        :param shape: of the array, at least one dimension.
+        :return: the loan; the message is published at the end of its `with`.
+        :raises TransportError: if no message can have this shape, if it does not fit the memory, or
+            if the topic has a `topic_dsm_size` or a transfer: use `publish` there.
+        """
+        native = self._opened()
+        sizes = checked_shape(shape)
+        head = head_of(sizes, self.dtype.itemsize)
+        with native_errors(self.topic):
+            room = native.lend(head, math.prod(sizes) * self.dtype.itemsize)
+        if room is None:
+            raise TransportError(
+                f"{self.topic}: its messages lie in a ring of fixed size or are transferred, so no "
+                "room can be lent: use publish()"
+            )
+        return Loan(room, array_in(room, sizes, self.dtype))
 
     @property
     def subscriptions(self) -> int:

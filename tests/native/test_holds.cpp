@@ -277,6 +277,25 @@ TEST_CASE("chunks that fall out of use are freed") {
   CHECK(chunks_of(f, *publisher) <= 2);
 }
 
+TEST_CASE("loans are filled while their publisher goes on; what is not published is used again") {
+  Fixture f;
+  const auto publisher = f.publisher(keep_last(3));
+  const auto subscription = f.subscription(keep_last(3));
+  for (uint64_t number = 1; number <= 300; number += 3) {
+    std::optional<Loan> loan = publisher->lend(large);
+    std::optional<Loan> small = publisher->lend(sizeof(Payload));
+    const std::optional<Loan> unused = publisher->lend(large);
+    REQUIRE((loan && small && unused));
+    publish(*publisher, number, large);
+    Payload{1, number + 1, large}.write(loan->data());
+    Payload{1, number + 2, sizeof(Payload)}.write(small->data());
+    publisher->publish(std::move(*loan), large, 1);
+    publisher->publish(std::move(*small), sizeof(Payload), 1);
+    CHECK(take_all(*subscription) == numbers(number, number + 2));
+  }
+  CHECK(chunks_of(f, *publisher) <= 5);
+}
+
 TEST_CASE("of a process that is killed while it takes holds, all memory is free again") {
   Fixture f;
   const uint64_t used = f.inspection.used_bytes();

@@ -3,6 +3,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/unique_ptr.h>
 
 #include <algorithm>
 #include <cstring>
@@ -50,7 +51,73 @@ private:
   Py_buffer view_{};
 };
 
+int get_buffer(PyObject * self, Py_buffer * view, int flags) noexcept {
+  return nb::inst_ptr<BoundLoan>(self)->add_view(self, view, flags);
+}
+
+void release_buffer(PyObject * self, Py_buffer *) noexcept {
+  nb::inst_ptr<BoundLoan>(self)->remove_view();
+}
+
+PyType_Slot loan_slots[] = {
+  {Py_bf_getbuffer, reinterpret_cast<void *>(&get_buffer)},
+  {Py_bf_releasebuffer, reinterpret_cast<void *>(&release_buffer)},
+  {0, nullptr}};
+
 }  // namespace
+
+BoundLoan::BoundLoan(
+  std::shared_ptr<SharedPublisher> source, Loan && loan, const nb::bytes & head, size_t body_bytes)
+: source_(std::move(source)),
+  loan_(std::move(loan)),
+  head_bytes_(head.size()),
+  body_bytes_(body_bytes) {
+  std::memcpy(loan_->data(), head.c_str(), head.size());
+}
+
+uint64_t BoundLoan::publish() {
+  require_unviewed();
+  const std::shared_ptr<SharedPublisher> source = source_;
+  Loan loan = std::move(*loan_);
+  end();
+  const nb::gil_scoped_release released;
+  return source->publisher->publish(std::move(loan), head_bytes_ + body_bytes_, realtime_ns());
+}
+
+void BoundLoan::give_back() {
+  require_unviewed();
+  end();
+}
+
+void BoundLoan::require_unviewed() const {
+  if (!loan_) {
+    throw nb::value_error("the room has been published or given back");
+  }
+  if (views_ != 0) {
+    throw nb::buffer_error("the room is still viewed, as by an array");
+  }
+}
+
+int BoundLoan::add_view(PyObject * self, Py_buffer * view, int flags) noexcept {
+  if (!loan_) {
+    view->obj = nullptr;
+    PyErr_SetString(PyExc_ValueError, "the room has been published or given back");
+    return -1;
+  }
+  constexpr int is_read_only = 0;
+  uint8_t * const body = loan_->data() + head_bytes_;
+  if (PyBuffer_FillInfo(
+        view, self, body, static_cast<Py_ssize_t>(body_bytes_), is_read_only, flags) != 0) {
+    return -1;
+  }
+  ++views_;
+  return 0;
+}
+
+void BoundLoan::end() noexcept {
+  loan_.reset();
+  source_.reset();
+}
 
 BoundPublisher::BoundPublisher(std::shared_ptr<Process> process, const EndpointSpec & spec)
 : shared_(std::make_shared<SharedPublisher>(std::move(process), spec)) {}
@@ -76,6 +143,16 @@ uint64_t BoundPublisher::publish_from(
 uint64_t BoundPublisher::publish_parts(const nb::bytes & head, const nb::object & body) {
   const BufferView view(body);
   return send({{head.c_str(), head.size()}, view.bytes()}, std::nullopt, {});
+}
+
+std::unique_ptr<BoundLoan> BoundPublisher::lend(const nb::bytes & head, size_t body_bytes) {
+  const std::shared_ptr<SharedPublisher> shared = held();
+  const size_t size_bytes = head.size() + body_bytes;
+  std::optional<Loan> loan = [&] {
+    const nb::gil_scoped_release released;
+    return shared->publisher->lend(size_bytes);
+  }();
+  return loan ? std::make_unique<BoundLoan>(shared, std::move(*loan), head, body_bytes) : nullptr;
 }
 
 nb::bytes BoundPublisher::gid() const { return to_bytes(held()->publisher->gid()); }
@@ -109,6 +186,9 @@ uint64_t BoundPublisher::send(
 }
 
 void bind_publisher(nb::module_ & module) {
+  nb::class_<BoundLoan>(module, "Loan", nb::type_slots(loan_slots))
+    .def("publish", &BoundLoan::publish)
+    .def("give_back", &BoundLoan::give_back);
   nb::class_<BoundPublisher>(module, "Publisher")
     .def(
       "publish", &BoundPublisher::publish, nb::arg("data"),
@@ -118,6 +198,7 @@ void bind_publisher(nb::module_ & module) {
       "publish_from", &BoundPublisher::publish_from, nb::arg("address"), nb::arg("size"),
       nb::arg("source_timestamp_ns") = nb::none())
     .def("publish_parts", &BoundPublisher::publish_parts, nb::arg("head"), nb::arg("body"))
+    .def("lend", &BoundPublisher::lend, nb::arg("head"), nb::arg("body_bytes"))
     .def_prop_ro("gid", &BoundPublisher::gid)
     .def("matched", &BoundPublisher::matched)
     .def("close", &BoundPublisher::close);

@@ -23,6 +23,36 @@ struct SharedPublisher {
   std::unique_ptr<Publisher> publisher;
 };
 
+/// Room lent by a publisher, until it is published or given back. Supports the buffer protocol, as
+/// writable memory behind `head`, the bytes before it.
+class BoundLoan {
+public:
+  BoundLoan(
+    std::shared_ptr<SharedPublisher> source, Loan && loan, const nanobind::bytes & head,
+    size_t body_bytes);
+  ~BoundLoan() { end(); }
+  BoundLoan(const BoundLoan &) = delete;
+  BoundLoan & operator=(const BoundLoan &) = delete;
+
+  /// Returns the sequence number. BufferError while something views the room.
+  uint64_t publish();
+  void give_back();
+
+  /// Of the buffer protocol: -1 with a Python error set, or 0.
+  int add_view(PyObject * self, Py_buffer * view, int flags) noexcept;
+  void remove_view() noexcept { --views_; }
+
+private:
+  void require_unviewed() const;
+  void end() noexcept;
+
+  std::shared_ptr<SharedPublisher> source_;
+  std::optional<Loan> loan_;
+  size_t head_bytes_;
+  size_t body_bytes_;
+  size_t views_ = 0;
+};
+
 /// A publisher as Python has it, until closed.
 class BoundPublisher {
 public:
@@ -33,6 +63,8 @@ public:
     const std::optional<nanobind::bytes> & client, int64_t number);
   uint64_t publish_from(uintptr_t address, size_t size, std::optional<int64_t> source_timestamp_ns);
   uint64_t publish_parts(const nanobind::bytes & head, const nanobind::object & body);
+  /// None where the topic's records lie in its ring.
+  std::unique_ptr<BoundLoan> lend(const nanobind::bytes & head, size_t body_bytes);
   nanobind::bytes gid() const;
   uint64_t matched() const { return held()->publisher->matched().current; }
   void close() { shared_.reset(); }

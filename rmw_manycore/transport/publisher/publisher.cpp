@@ -5,6 +5,7 @@
 
 #include "transport/matching/leaving.hpp"
 #include "transport/notification/notifier.hpp"
+#include "transport/publisher/lent.hpp"
 #include "transport/publisher/publisher_impl.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 
@@ -40,34 +41,62 @@ Draft Publisher::draft(size_t size_bytes) {
 uint64_t Publisher::publish(
   Draft && draft, size_t size_bytes, int64_t source_timestamp_ns, const Correlation & correlation,
   const WakeSet & spared) {
-  Impl & impl = *impl_;
   const Writing writing = std::move(draft.writing_);
-  const uint64_t sequence_number = ++impl.published;
+  return impl_->publish({size_bytes, source_timestamp_ns, correlation}, spared);
+}
+
+std::optional<Loan> Publisher::lend(size_t size_bytes) {
+  Impl & impl = *impl_;
+  impl.membership.require();
+  if (!impl.writer.has_chunks()) {
+    return std::nullopt;
+  }
+  auto lent = std::make_unique<Loan::Lent>(Loan::Lent{impl, {}});
+  const Writing writing = impl.write();
+  lent->chunk = impl.writer.lend(size_bytes);
+  return Loan(std::move(lent));
+}
+
+uint64_t Publisher::publish(Loan && loan, size_t size_bytes, int64_t source_timestamp_ns) {
+  Impl & impl = *impl_;
+  Loan ended = std::move(loan);
+  impl.membership.require();
+  impl.registry.tracer().note(TraceKind::publish_begin, impl.slot, 0, size_bytes);
+  const Writing writing = impl.write();
+  impl.writer.take_back(ended.lent_->chunk);
+  ended.lent_.reset();
+  return impl.publish({size_bytes, source_timestamp_ns, {}}, {});
+}
+
+/// The room is found, and filled.
+uint64_t Publisher::Impl::publish(const Written & written, const WakeSet & spared) {
+  const uint64_t sequence_number = ++published;
   // Touch both clocks before the message wakes readers that check them.
-  const bool started = impl.has_deadline() && impl.deadline.touch(impl.entry.qos.deadline_ns);
-  const bool revived = impl.is_manual() && impl.liveliness.assert_now();
+  const bool started = has_deadline() && deadline.touch(entry.qos.deadline_ns);
+  const bool revived = is_manual() && liveliness.assert_now();
   if (started || revived) {  // wake waiters: a deadline or lease just started
-    notify_event_watchers(impl.registry, impl.entry.process);
+    manycore::notify_event_watchers(registry, entry.process);
   }
-  impl.trace_write(size_bytes, correlation);
-  const uint64_t number =
-    impl.writer.commit(size_bytes, source_timestamp_ns, sequence_number, correlation);
-  const bool targeted = impl.entry.role == EndpointRole::reply;
+  trace_write(written.size_bytes, written.correlation);
+  const uint64_t number = writer.commit(
+    written.size_bytes, written.source_timestamp_ns, sequence_number, written.correlation);
+  const bool targeted = entry.role == EndpointRole::reply;
   announce(
-    impl.registry, impl.cluster, impl.writer.readers(),
-    {impl.entry.block, impl.slot, impl.entry.slot.incarnation, number,
-     targeted ? &correlation.client : nullptr, &impl.registry.processes()[impl.entry.process].wake,
+    registry, cluster, writer.readers(),
+    {entry.block, slot, entry.slot.incarnation, number,
+     targeted ? &written.correlation.client : nullptr, &registry.processes()[entry.process].wake,
      spared},
-    impl.sender);
+    sender);
   if (revived) {
-    impl.notify_readers_of_event();
+    notify_readers_of_event();
   }
-  impl.registry.tracer().note(TraceKind::publish_end, impl.slot, number);
-  EndpointCounters & counters = impl.entry.counters;
+  registry.tracer().note(TraceKind::publish_end, slot, number);
+  EndpointCounters & counters = entry.counters;
   counters.messages.store(sequence_number, std::memory_order_relaxed);
   counters.bytes.store(
-    counters.bytes.load(std::memory_order_relaxed) + size_bytes, std::memory_order_relaxed);
-  impl.sender.require_received();
+    counters.bytes.load(std::memory_order_relaxed) + written.size_bytes,
+    std::memory_order_relaxed);
+  sender.require_received();
   return sequence_number;
 }
 

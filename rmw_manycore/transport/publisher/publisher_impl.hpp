@@ -35,6 +35,14 @@ struct Publisher::Impl {
   }
   /// Exclusive access to the topic DSM; blocks while another thread has it.
   Writing write() { return Writing(mutex, writer, membership); }
+  /// A message in the room of the writer.
+  struct Written {
+    size_t size_bytes;
+    int64_t source_timestamp_ns;
+    Correlation correlation;
+  };
+  /// Publishes it. The caller has a Writing.
+  uint64_t publish(const Written & written, const WakeSet & spared);
   void trace_write(size_t size_bytes, const Correlation & correlation) noexcept;
   /// Wakes threads that wait for events of matched subscriptions.
   void notify_event_watchers();

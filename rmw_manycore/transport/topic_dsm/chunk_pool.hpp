@@ -65,6 +65,7 @@ public:
   void add(const Block & chunk) {
     reserve(unused_);
     put_back(chunk);
+    ++count_;
     bytes_ += chunk.end - chunk.begin;
   }
   /// An unused chunk of at least `bytes`, the smallest one, unless much of it would be left over.
@@ -79,18 +80,21 @@ public:
         best = &chunk;
       }
     }
-    return best == nullptr ? std::nullopt : std::optional(remove(best));
+    return best == nullptr ? std::nullopt : std::optional(remove(*best));
   }
   /// An unused chunk that was not used while the last `records` were published, or any.
   std::optional<Block> take_idle(uint64_t newest, uint64_t records) noexcept {
     for (const Block & chunk : unused_) {
       if (chunk.number + records <= newest) {
-        return remove(&chunk);
+        return remove(chunk);
       }
     }
     return std::nullopt;
   }
-  void forget(const Block & chunk) noexcept { bytes_ -= chunk.end - chunk.begin; }
+  void forget(const Block & chunk) noexcept {
+    --count_;
+    bytes_ -= chunk.end - chunk.begin;
+  }
 
   /// The chunk has a record from now on.
   void use(const Block & chunk) {
@@ -106,17 +110,18 @@ public:
 
 private:
   /// Room for all chunks, so that none is lost for want of memory.
-  void reserve(std::vector<Block> & list) { list.reserve(in_use() + unused_.size() + 2); }
-  Block remove(const Block * chunk) noexcept {
-    const Block taken = *chunk;
-    unused_.erase(unused_.begin() + (chunk - unused_.data()));
+  void reserve(std::vector<Block> & list) { list.reserve(count_ + 1); }
+  Block remove(const Block & chunk) noexcept {
+    const Block taken = chunk;
+    unused_.erase(unused_.begin() + (&chunk - unused_.data()));
     return taken;
   }
 
   BlockRing used_;             ///< by number
   std::vector<Block> kept_;    ///< not wanted, but read or held
   std::vector<Block> unused_;  ///< in the order of their last use
-  uint64_t bytes_ = 0;
+  uint64_t count_ = 0;  ///< of all chunks, lent ones included
+  uint64_t bytes_ = 0;  ///< likewise
 };
 
 }  // namespace manycore

@@ -25,10 +25,13 @@ uint64_t size_class(uint64_t bytes) {
 
 /// The ring of a fixed size is all that its topic has. Replies are counted by their clients, and
 /// transferred records have their place in the ring of the receiver.
-bool TopicDsmWriter::goes_to_chunk(uint64_t size_bytes) const noexcept {
-  return size_bytes >= min_chunk_message_bytes && size_bytes <= UINT32_MAX &&
-         endpoint_.topic_dsm_size == 0 && endpoint_.role == EndpointRole::topic &&
+bool TopicDsmWriter::has_chunks() const noexcept {
+  return endpoint_.topic_dsm_size == 0 && endpoint_.role == EndpointRole::topic &&
          endpoint_.transfer == Transfer::dsm;
+}
+
+bool TopicDsmWriter::goes_to_chunk(uint64_t size_bytes) const noexcept {
+  return size_bytes >= min_chunk_message_bytes && size_bytes <= UINT32_MAX && has_chunks();
 }
 
 /// A record that is in no generation any more is not wanted, and no reader claims it.
@@ -64,14 +67,34 @@ ChunkPool::State TopicDsmWriter::state_of(const Block & chunk) {
   return is_read ? ChunkPool::State::read : ChunkPool::State::unused;
 }
 
+TopicDsmWriter::Room TopicDsmWriter::room_in(const Block & chunk) const noexcept {
+  return {cluster_.find<uint8_t>(chunk.begin) + chunk_data, chunk.end - chunk.begin - chunk_data};
+}
+
 TopicDsmWriter::Room TopicDsmWriter::find_chunk_room(uint64_t size_bytes) {
+  const Block chunk = lend(size_bytes);
+  try {
+    take_back(chunk);
+  } catch (...) {
+    chunks_.put_back(chunk);
+    throw;
+  }
+  return room_in(chunk);
+}
+
+Block TopicDsmWriter::lend(uint64_t size_bytes) {
+  blocked_until_ns_ = 0;
+  readers_.require_all(endpoint_.topic);
   chunks_.collect([this](const Block & chunk) { return state_of(chunk); });
+  return get_chunk(size_bytes, chunk::bytes_for(size_bytes));
+}
+
+void TopicDsmWriter::take_back(Block chunk) {
+  readers_.require_all(endpoint_.topic);
   claim_descriptor(record_alignment);
-  Block chunk = get_chunk(size_bytes, chunk::bytes_for(size_bytes));
   chunk.number = next_number_;
   chunks_.use(chunk);
   is_chunk_in_work_ = true;
-  return {cluster_.find<uint8_t>(chunk.begin) + chunk_data, chunk.end - chunk.begin - chunk_data};
 }
 
 Block TopicDsmWriter::get_chunk(uint64_t message_bytes, uint64_t bytes) {

@@ -37,6 +37,16 @@ public:
 
   /// Finds room for one record. Throws Error{too_large|no_space|timeout}.
   Room find_room(uint64_t size_bytes);
+  /// False where all records lie in the ring.
+  bool has_chunks() const noexcept;
+  /// A chunk with room for a message of this size, which belongs to the caller until take_back() or
+  /// give_back(). Throws as find_room() does.
+  Block lend(uint64_t size_bytes);
+  /// Makes a lent chunk the room of the next commit(), in place of find_room(). If it throws, the
+  /// chunk stays with the caller.
+  void take_back(Block chunk);
+  void give_back(const Block & chunk) noexcept { chunks_.put_back(chunk); }
+  Room room_in(const Block & chunk) const noexcept;
   /// Gives back the room of the last find_room().
   void abandon_room() noexcept;
   /// Publishes the first `size_bytes` of the room as a record and returns its number. The reader

@@ -17,7 +17,7 @@ SHAPES = [(5,), (2, 3), (0,), (4, 0, 3), (1, 2, 3, 4)]
 
 
 def message_of(array: np.ndarray) -> bytes:
-    return head_of(array) + array.tobytes()
+    return head_of(array.shape, array.itemsize) + array.tobytes()
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -33,7 +33,7 @@ def test_what_is_written_is_read(dtype: np.dtype, shape: tuple[int, ...]) -> Non
 
 def test_elements_of_up_to_four_bytes_are_aligned() -> None:
     for dimensions in range(1, 5):
-        assert len(head_of(np.zeros((1,) * dimensions, np.float32))) % 16 == 0
+        assert len(head_of((1,) * dimensions, 4)) % 16 == 0
 
 
 def big_endian(values: list[float], sizes: list[int]) -> bytes:
@@ -99,4 +99,4 @@ def test_a_type_without_a_message_is_refused(dtype: object) -> None:
 
 def test_a_number_is_no_array() -> None:
     with pytest.raises(TransportError, match="1 to 32 dimensions"):
-        head_of(np.array(1.0))
+        head_of((), 8)
