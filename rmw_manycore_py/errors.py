@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import errno
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -54,11 +55,11 @@ class Problem:
 
 
 class FileError(ManycoreError):
-    """All problems in files of the user, in line order."""
+    """All problems in files of the user, in line order, and lines of advice."""
 
-    def __init__(self, *problems: Problem) -> None:
+    def __init__(self, *problems: Problem, advice: Iterable[str] = ()) -> None:
         self.problems = tuple(sorted(problems, key=lambda p: (str(p.file), p.line)))
-        super().__init__("\n".join(str(problem) for problem in self.problems), EXIT_BAD_INPUT)
+        super().__init__("\n".join([*map(str, self.problems), *advice]), EXIT_BAD_INPUT)
 
 
 class MapfileError(FileError):

@@ -37,7 +37,8 @@ SHOWN = {
     ),
     "tutorials/laptop_to_chip.md": (
         r"/sink +alive",
-        r"crowded\.yaml.*bytes of topic DSMs in cluster 1",
+        r"crowded\.yaml.*at most 3\.5 MiB of topic DSMs in cluster 1",
+        r"it fits if you move filter to cluster 3",
         r"^exit status 2$",
         r"/image_raw \(/filter\) > /image_inverted",
         r"topic_name: /image_raw",

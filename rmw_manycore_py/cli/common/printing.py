@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Print JSON, notices, tables, sizes and counts."""
+"""Print JSON, notices and tables; sizes and counts in words."""
 
 from __future__ import annotations
 
@@ -12,6 +12,21 @@ import click
 from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
+
+from rmw_manycore_py.platform.texts import counted, size_text
+
+__all__ = [
+    "PlainTable",
+    "counted",
+    "echo",
+    "escaped",
+    "new_table",
+    "print_json",
+    "print_notices",
+    "print_table",
+    "printable",
+    "size_text",
+]
 
 # C0 and C1 control characters, line separators, and those that reorder the text around them; not
 # the direction marks (U+200E, U+200F, U+061C), which Arabic and Hebrew texts contain.
@@ -77,16 +92,3 @@ def print_table(table: Table) -> None:
     with console.capture() as capture:
         console.print(table)
     click.echo("\n".join(line.rstrip() for line in capture.get().splitlines()))
-
-
-def size_text(size_bytes: int) -> str:
-    """Format a number of bytes with a binary unit: 4 MiB."""
-    for unit, shift in (("GiB", 30), ("MiB", 20), ("KiB", 10)):
-        if size_bytes >= 1 << shift:
-            return f"{size_bytes / (1 << shift):.4g} {unit}"
-    return f"{size_bytes} B"
-
-
-def counted(number: int, noun: str) -> str:
-    """Format a count with its noun: 1 node, 2 nodes."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

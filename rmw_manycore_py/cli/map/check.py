@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -12,6 +13,7 @@ from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import counted, echo, print_json, print_notices
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import load_mapfile, resolve
+from rmw_manycore_py.mapfile.placing.moves import RoomError
 
 
 @click.command("check", epilog=examples("manycore map check talker_listener"))
@@ -26,7 +28,7 @@ def command(mapfile: Path, as_json: bool) -> None:
         placement = resolve(load_mapfile(mapfile), to_start=False)
     except MapfileError as error:
         if as_json:
-            print_json({"valid": False, "problems": [vars(p) for p in error.problems]})
+            print_json(_refused(error))
         raise
     missing = {node.full_name: node.missing for node in placement.nodes if node.missing}
     if as_json:
@@ -40,3 +42,10 @@ def command(mapfile: Path, as_json: bool) -> None:
         echo(f"{name} cannot run here: {reason}")
     if missing:
         echo(f"a plan: {len(missing)} of {nodes} cannot run here")
+
+
+def _refused(error: MapfileError) -> dict[str, Any]:
+    """Return the problems as JSON data, with advice on room."""
+    problems = [vars(problem) for problem in error.problems]
+    advice = error.advice.data() if isinstance(error, RoomError) else {}
+    return {"valid": False, "problems": problems, **advice}

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from itertools import chain, count
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
@@ -19,6 +20,8 @@ from rmw_manycore_py.platform.topology import (
 def assign_cores(mapfile: Mapfile, occupied: Collection[Core] = ()) -> dict[str, Core]:
     """Return each node's core; nodes without one get the first free core of their cluster.
 
+    Where the cores do not suffice, numbers beyond them follow, which `check_room` refuses.
+
     :param occupied: cores used by nodes of other runs on the platform.
     """
     nodes = mapfile.sections.nodes
@@ -31,30 +34,34 @@ def assign_cores(mapfile: Mapfile, occupied: Collection[Core] = ()) -> dict[str,
             cores[name] = Core(node.cluster, node.core)
             continue
         cluster = mapfile.topology.clusters[node.cluster - 1]
-        free = [core for core in cluster.free if Core(cluster.id, core) not in taken]
-        if not free:
-            expected = f"a free core in cluster {cluster.id}"
-            found = f"all {len(cluster.free)} taken"
-            raise MapfileError(mapfile.document.problem(("nodes", name), expected, found))
-        cores[name] = Core(cluster.id, free[0])
+        numbers = chain(cluster.free, count(cluster.cores))
+        cores[name] = next(
+            core for core in (Core(cluster.id, number) for number in numbers) if core not in taken
+        )
         taken.add(cores[name])
     return cores
 
 
-def worker_cores(mapfile: Mapfile, used: Collection[Core]) -> dict[str, tuple[Core, ...]]:
-    """Return the cores of each node's workers: the first free ones of its cluster."""
+def worker_cores(
+    mapfile: Mapfile, used: Collection[Core]
+) -> tuple[dict[str, tuple[Core, ...]], list[Problem]]:
+    """Return the cores of each node's workers, and the nodes for whose workers none are left.
+
+    They are the first free ones of the node's cluster.
+    """
     taken = set(used)
     cores: dict[str, tuple[Core, ...]] = {}
+    problems = []
     for name, node in mapfile.sections.nodes.items():
         cluster = mapfile.topology.clusters[node.cluster - 1]
         free = [core for core in cluster.free if Core(cluster.id, core) not in taken]
         if node.workers > len(free):
             expected = f"at most {len(free)}, the cores that are left in cluster {cluster.id}"
             path = ("nodes", name, "workers")
-            raise MapfileError(mapfile.document.problem(path, expected, str(node.workers)))
+            problems.append(mapfile.document.problem(path, expected, str(node.workers)))
         cores[name] = tuple(Core(cluster.id, core) for core in free[: node.workers])
         taken.update(cores[name])
-    return cores
+    return cores, problems
 
 
 def _check_occupied(mapfile: Mapfile, both: Collection[Core]) -> None:

@@ -58,6 +58,8 @@ def place(
         rules=_rules(node, launched),
         terminal=node.terminal,
         scheduling=scheduling,
+        depths=_depths(start),
+        has_unknown_topics=_has_unknown_topics(node, start),
     )
 
 
@@ -122,3 +124,13 @@ def _topics_of(node: NodeSection, start: NodeStart) -> tuple[dict[str, str], dic
             {start.topic(topic): canonical_type(type_name) for topic, type_name in written.items()}
         )
     return result[0], result[1]
+
+
+def _depths(start: NodeStart) -> dict[tuple[str, str], int]:
+    shown = start.shown.depths if start.shown else {}
+    return {(key, start.topic(topic)): depth for (key, topic), depth in shown.items()}
+
+
+def _has_unknown_topics(node: NodeSection, start: NodeStart) -> bool:
+    is_clear = start.shown is not None and not start.shown.unclear
+    return not is_clear and not node.publish and not node.subscribe

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from rmw_manycore_py.mapfile.placing.parameters import GeneratedFile, Source, words_of
 from rmw_manycore_py.native.enums import Transfer
-from rmw_manycore_py.platform.topology import Core, Topology
+from rmw_manycore_py.platform.smem import DEFAULT_DEPTH
+from rmw_manycore_py.platform.topology import Core, Topology, room_for_topic_dsms
 from rmw_manycore_py.platform.transfers import transfer_text
 from rmw_manycore_py.process.scheduling import Scheduling
 from rmw_manycore_py.ros.names import file_stem
@@ -75,6 +76,8 @@ class PlacedNode:
     :param terminal: whether it has a terminal of its own.
     :param scheduling: policy and priority; None where the node inherits them.
     :param missing: why it cannot run here, in a plan; else empty.
+    :param depths: known QoS depths, by ``publish`` or ``subscribe`` and the topic's full name.
+    :param has_unknown_topics: whether neither mapfile nor source tell all of its topics.
     """
 
     name: str
@@ -95,6 +98,12 @@ class PlacedNode:
     terminal: bool = False
     scheduling: Scheduling | None = None
     missing: str = ""
+    depths: Mapping[tuple[str, str], int] = field(default_factory=dict)
+    has_unknown_topics: bool = False
+
+    def depth(self, key: Literal["publish", "subscribe"], topic: str) -> int:
+        """Return the QoS depth of an endpoint, by default that of ROS 2."""
+        return self.depths.get((key, topic), DEFAULT_DEPTH)
 
     @property
     def place(self) -> Core:
@@ -178,16 +187,37 @@ class TopicEntry:
 
 @dataclass(frozen=True)
 class ClusterMemory:
-    """Local memory of a cluster and its use by fixed topic DSMs, in bytes."""
+    """Local memory of a cluster, and what a run takes of it when its nodes have started, in bytes.
+
+    :param cluster: counted from 1.
+    :param smem_size: all of it.
+    :param topic_dsms: rings of fixed size, by topic.
+    :param nodes: the nodes' own endpoints, and the heads of topic DSMs.
+    :param queues: subscriptions of topics with their queues.
+    :param growing: topics published here whose rings grow beyond what `nodes` has of them.
+    """
 
     cluster: int
     smem_size: int
     topic_dsms: Mapping[str, int]
+    nodes: int = 0
+    queues: int = 0
+    growing: tuple[str, ...] = ()
 
     @property
     def used(self) -> int:
         """Bytes used by topic DSMs of fixed size."""
         return sum(self.topic_dsms.values())
+
+    @property
+    def total(self) -> int:
+        """Bytes used by all."""
+        return self.used + self.nodes + self.queues
+
+    @property
+    def room(self) -> int:
+        """Bytes that `total` may have, so that each topic DSM of fixed size finds its place."""
+        return room_for_topic_dsms(self.smem_size)
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,8 @@ from rmw_manycore_py.mapfile.placing.crossings import bridge_placement
 from rmw_manycore_py.mapfile.placing.foreign import foreign_starts
 from rmw_manycore_py.mapfile.placing.imports import check_imports
 from rmw_manycore_py.mapfile.placing.launched import launch_rules, read_launch
+from rmw_manycore_py.mapfile.placing.memory import memory_of_clusters
+from rmw_manycore_py.mapfile.placing.moves import Advice, RoomError
 from rmw_manycore_py.mapfile.placing.notices import (
     elsewhere,
     of_launch,
@@ -23,13 +25,12 @@ from rmw_manycore_py.mapfile.placing.notices import (
 )
 from rmw_manycore_py.mapfile.placing.placed import place
 from rmw_manycore_py.mapfile.placing.placement import Placement
+from rmw_manycore_py.mapfile.placing.room import Placed, check_rings, check_room
 from rmw_manycore_py.mapfile.placing.sessions import check_sessions
 from rmw_manycore_py.mapfile.placing.start import NodeStart, node_starts
 from rmw_manycore_py.mapfile.placing.topics import (
     check_crossing_types,
-    check_memory,
     check_types,
-    memory_of_clusters,
     topic_table,
 )
 from rmw_manycore_py.platform.topology import Core, usable_cpus
@@ -66,7 +67,7 @@ def _placement(
     occupied: Collection[Core],
 ) -> Placement:
     cores = assign_cores(mapfile, occupied)
-    workers = worker_cores(mapfile, {*cores.values(), *occupied})
+    workers, worker_problems = worker_cores(mapfile, {*cores.values(), *occupied})
     of_workers = [core for one in workers.values() for core in one]
     bridge = bridge_placement(mapfile, starts, {*cores.values(), *of_workers, *occupied})
     cpus = usable_cpus()
@@ -79,14 +80,20 @@ def _placement(
     )
     import_problems, import_notices = check_imports(mapfile, starts)
     topics = topic_table(mapfile, nodes)
-    memory = memory_of_clusters(mapfile, topics)
+    memory = memory_of_clusters(mapfile.topology, nodes, topics)
+    placed = Placed(mapfile, nodes, occupied)
+    ring_problems = [*check_rings(mapfile)]
+    room_problems = [*worker_problems, *([] if ring_problems else check_room(placed, memory))]
     problems = [
         *check_types(mapfile, topics),
         *check_crossing_types(mapfile, starts, topics),
         *import_problems,
-        *check_memory(mapfile, memory),
+        *ring_problems,
+        *room_problems,
         *check_sessions(mapfile, topics),
     ]
+    if room_problems:
+        raise RoomError(problems, Advice.of(placed))
     if problems:
         raise MapfileError(*problems)
     return Placement(

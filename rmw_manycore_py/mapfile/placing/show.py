@@ -8,6 +8,7 @@ from typing import Any
 
 from rmw_manycore_py.mapfile.placing.placement import (
     BridgePlacement,
+    ClusterMemory,
     LaunchRules,
     PlacedNode,
     Placement,
@@ -17,25 +18,31 @@ from rmw_manycore_py.mapfile.placing.placement import (
 
 def as_data(placement: Placement) -> dict[str, Any]:
     """Return all fields of a placement as JSON data."""
-    topology = placement.topology
     return {
         "platform": placement.name,
-        "profile": topology.profile,
-        "clusters": [
-            {
-                "cluster": memory.cluster,
-                "cores": topology.clusters[memory.cluster - 1].cores,
-                "reserved_cores": sorted(topology.clusters[memory.cluster - 1].reserved),
-                "smem_size": memory.smem_size,
-                "used": memory.used,
-                "topic_dsms": dict(memory.topic_dsms),
-            }
-            for memory in placement.memory
-        ],
+        "profile": placement.topology.profile,
+        "clusters": [cluster_row(placement, memory) for memory in placement.memory],
         "nodes": [_node(node) for node in placement.nodes],
         "topics": [_topic(topic) for topic in placement.topics],
         "bridge": _bridge(placement.bridge) if placement.bridge else None,
         "notices": list(placement.notices),
+    }
+
+
+def cluster_row(placement: Placement, memory: ClusterMemory) -> dict[str, Any]:
+    """Return a cluster and its memory as JSON data."""
+    cluster = placement.topology.clusters[memory.cluster - 1]
+    return {
+        "cluster": memory.cluster,
+        "cores": cluster.cores,
+        "reserved_cores": sorted(cluster.reserved),
+        "smem_size": memory.smem_size,
+        "used": memory.used,
+        "topic_dsms": dict(memory.topic_dsms),
+        "node_bytes": memory.nodes,
+        "queue_bytes": memory.queues,
+        "total": memory.total,
+        "growing_topics": list(memory.growing),
     }
 
 

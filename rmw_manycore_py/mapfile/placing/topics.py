@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Topic table, and memory of the clusters."""
+"""Topic table."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rmw_manycore_py.errors import Problem
 from rmw_manycore_py.mapfile.placing.crossings import CROSSINGS
-from rmw_manycore_py.mapfile.placing.placement import ClusterMemory, PlacedNode, TopicEntry
-from rmw_manycore_py.platform.topology import room_for_topic_dsms
+from rmw_manycore_py.mapfile.placing.placement import PlacedNode, TopicEntry
 from rmw_manycore_py.ros import ament
 from rmw_manycore_py.ros.names import expand
 
@@ -98,38 +97,6 @@ def _check_installed(mapfile: Mapfile, path: tuple[str, ...], type_name: str) ->
         yield mapfile.document.problem(path, expected, f"{type_name} of '{package}'")
     elif type_name not in installed:
         yield mapfile.document.problem(path, f"a type of the package '{package}'", type_name)
-
-
-def memory_of_clusters(mapfile: Mapfile, topics: Sequence[TopicEntry]) -> tuple[ClusterMemory, ...]:
-    """Return the bytes of fixed-size topic DSMs per cluster: one ring per publisher."""
-    result = []
-    for cluster in mapfile.topology.clusters:
-        sizes = {}
-        for topic in topics:
-            rings = sum(node.cluster == cluster.id for node in topic.publishers)
-            rings += sum(receiver == cluster.id for _, receiver in topic.landings)
-            if rings and topic.topic_dsm_size is not None:
-                sizes[topic.name] = rings * topic.topic_dsm_size
-        result.append(ClusterMemory(cluster.id, cluster.smem_size, sizes))
-    return tuple(result)
-
-
-def check_memory(mapfile: Mapfile, memory: Iterable[ClusterMemory]) -> Iterator[Problem]:
-    """Yield topics that fit no cluster, and clusters too small for all their topics."""
-    most = room_for_topic_dsms(mapfile.topology.smem_size)
-    for name, topic in mapfile.sections.topics.items():
-        if topic.topic_dsm_size is not None and topic.topic_dsm_size > most:
-            path = ("topics", name, "topic_dsm_size")
-            expected = f"at most {most}, what topic DSMs may have of a cluster's local memory"
-            yield mapfile.document.problem(path, expected, str(topic.topic_dsm_size))
-            return
-    for cluster in memory:
-        if cluster.used > most:
-            largest = max(cluster.topic_dsms, key=lambda name: cluster.topic_dsms[name])
-            expected = f"at most {most} bytes of topic DSMs in cluster {cluster.cluster}"
-            sizes = ", ".join(f"{name} {size}" for name, size in cluster.topic_dsms.items())
-            path = ("topics", as_written(mapfile, largest), "topic_dsm_size")
-            yield mapfile.document.problem(path, expected, f"{cluster.used} ({sizes})")
 
 
 def as_written(mapfile: Mapfile, topic: str) -> str:

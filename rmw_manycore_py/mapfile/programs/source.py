@@ -13,6 +13,7 @@ from rmw_manycore_py.errors import MapfileError, Problem, what_is_wrong
 from rmw_manycore_py.mapfile.format.document import read_text
 
 _CALLS = {"create_publisher": "publish", "create_subscription": "subscribe"}
+_QOS_ARGUMENT = {"publish": 2, "subscribe": 3}
 # Excludes the parts of services and actions (SetBool_Request), which are not listed as types.
 _INTERFACE = re.compile(r"\w+\.(msg|srv|action)\.[A-Z][A-Za-z0-9]*")
 _NODE_CLASSES = ("Node", "LifecycleNode")
@@ -20,7 +21,10 @@ _NODE_CLASSES = ("Node", "LifecycleNode")
 
 @dataclass
 class SourceNode:
-    """A node found in a source; `unclear` holds the lines of computed topics."""
+    """A node found in a source; `unclear` holds the lines of computed topics.
+
+    `depths` holds the literal QoS depths, by the key that lists the topic and its name.
+    """
 
     file: Path
     line: int
@@ -28,6 +32,7 @@ class SourceNode:
     publish: dict[str, str] = field(default_factory=dict)
     subscribe: dict[str, str] = field(default_factory=dict)
     unclear: list[int] = field(default_factory=list)
+    depths: dict[tuple[str, str], int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -179,6 +184,17 @@ def _add_topics(node: SourceNode, calls: list[ast.Call], names: _Names) -> None:
             node.unclear.append(call.lineno)
         else:
             getattr(node, kind)[topic] = message_type
+            depth = _depth(_argument(call, _QOS_ARGUMENT[kind], "qos_profile"))
+            if depth is not None:
+                node.depths[kind, topic] = depth
+
+
+def _depth(qos: ast.expr | None) -> int | None:
+    """Return the depth in 10 or QoSProfile(depth=10)."""
+    if isinstance(qos, ast.Call):
+        qos = next((keyword.value for keyword in qos.keywords if keyword.arg == "depth"), None)
+    value = qos.value if isinstance(qos, ast.Constant) else None
+    return value if type(value) is int else None
 
 
 def _calls(nodes: list[ast.AST]) -> Iterator[ast.Call]:

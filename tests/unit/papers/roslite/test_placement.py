@@ -117,5 +117,5 @@ def test_a_mapfile_that_needs_more_than_a_cluster_has_is_refused_by_name(tmp_pat
     variant["topics"] = {
         topic: {"topic_dsm_size": "1MiB"} for topic in ("/base_waypoints", "/closest_waypoint")
     }
-    with pytest.raises(MapfileError, match="at most 1835008 bytes of topic DSMs in cluster 2"):
+    with pytest.raises(MapfileError, match=r"at most 1\.75 MiB of topic DSMs in cluster 2"):
         resolve(load_mapfile(write(variant, tmp_path / "large.yaml")))
