@@ -32,8 +32,13 @@ def process_name(trace: Trace, process: Process) -> str:
     """Return the nodes of a process, else the label used by the tools."""
     if process.is_receive_thread:
         return f"receive thread {process.cluster}"
-    own = {trace.node_of(endpoint) for thread in process.threads for endpoint in _acting(thread)}
-    return ", ".join(sorted(own)) or process.label
+    return ", ".join(nodes_of(trace, process)) or process.label
+
+
+def nodes_of(trace: Trace, process: Process) -> list[str]:
+    """Return the nodes that publish or take in a process, by name."""
+    acting = [endpoint for thread in process.threads for endpoint in _acting(thread)]
+    return sorted({trace.node_of(endpoint) for endpoint in acting})
 
 
 def _acting(thread: Thread) -> set[EndpointId]:

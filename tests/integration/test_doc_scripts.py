@@ -41,6 +41,7 @@ SHOWN = {
         r"it fits if you move filter to cluster 3",
         r"^exit status 2$",
         r"/image_raw \(/filter\) > /image_inverted",
+        r"verdict: it fits, .*; both topics cross clusters, [1-9].* messages/s",
         r"topic_name: /image_raw",
     ),
     "tutorials/offload_ndt.md": (r"ndt_scan_matcher", r"answered", r"/points_raw"),

@@ -3,6 +3,12 @@
 
 from __future__ import annotations
 
+import csv
+import json
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
 import pytest
 from support import IS_MANYCORE, manycore_command, wait_until
 
@@ -15,6 +21,9 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="manycore run is about rmw_manycore"),
 ]
 
+PIPELINE = {"image_source": "image_raw", "image_filter": "image_inverted", "image_sink": None}
+HEARD = r"image_sink +\| .*frame \d+ is "
+MESSAGES = 8  # of an image source that publishes 10 times a second
 QUIET = """\
 import rclpy
 from rclpy.qos import QoSProfile
@@ -42,6 +51,12 @@ PLATFORMS = {
     "granules of a page": "{profile: host, clusters: 2, smem_size: 96MiB}",
 }
 ENDPOINTS = 2 * (2 + 7 * 2 + 3)
+
+
+def answer(start, *words: str | Path) -> Any:
+    program = start(manycore_command(*words, "--json"))
+    assert program.wait() == 0, program
+    return json.loads(program.output[program.output.index(program.output.strip()[0]) :])
 
 
 @pytest.mark.parametrize("kind", PLATFORMS)
@@ -73,3 +88,84 @@ def test_nodes_take_the_memory_that_is_predicted(start, tmp_path, platform, kind
 
     wait_until(lambda: used() == predicted, f"{predicted} bytes are used")
     assert run.stop() == 0
+
+
+def write_pipeline(path: Path, *clusters: int) -> Path:
+    lines = [
+        f"  {name}: {{cluster: {cluster}, module: rmw_manycore_py.examples.{name}}}\n"
+        for name, cluster in zip(PIPELINE, clusters, strict=True)
+    ]
+    path.write_text("platform: {profile: coolidge, smem_size: 64MiB}\nnodes:\n" + "".join(lines))
+    return path
+
+
+def traced(start, mapfile: Path, trace: Path) -> list[dict[str, str]]:
+    """Run a mapfile, and return the events after all nodes had talked, as rows of the CSV file."""
+    run = start(manycore_command("run", mapfile))
+    run.wait_for(HEARD)
+    assert start(manycore_command("trace", "start")).wait() == 0
+    for _ in range(MESSAGES):
+        run.skip_output()
+        run.wait_for(HEARD)
+    for words in (("stop",), ("save", "-o", trace)):
+        assert start(manycore_command("trace", *words)).wait() == 0
+    assert run.stop() == 0
+    lines = [line for line in trace.read_text().splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(lines))
+
+
+def sends(events: list[dict[str, str]]) -> dict[tuple[str, int, int], set[str]]:
+    """Return record numbers by topic, cluster of the publisher, and receiving cluster."""
+    found: dict[tuple[str, int, int], set[str]] = {}
+    for event in events:
+        if event["kind"] == "send" and event["topic"] in ("/image_raw", "/image_inverted"):
+            key = (event["topic"], int(event["cluster"]), int(event["value"]))
+            found.setdefault(key, set()).add(event["number"])
+    return found
+
+
+def test_counts_are_those_of_the_raw_events(start, tmp_path, platform) -> None:
+    """Traced in clusters of their own; looked at there, together, and apart in another way."""
+    spread = write_pipeline(tmp_path / "spread.yaml", 1, 2, 3)
+    events = traced(start, spread, tmp_path / "spread.csv")
+    writes = [event for event in events if event["kind"] == "write"]
+    messages = Counter(event["topic"] for event in writes)
+    sizes: Counter[str] = Counter()
+    for event in writes:
+        sizes[event["topic"]] += int(event["value"])
+    assert min(messages["/image_raw"], messages["/image_inverted"]) >= MESSAGES - 1
+    placements = {
+        (1, 2, 3): {("/image_raw", 1, 2), ("/image_inverted", 2, 3)},
+        (4, 4, 4): set(),
+        (5, 5, 1): {("/image_inverted", 5, 1)},
+    }
+    for clusters, expected in placements.items():
+        mapfile = write_pipeline(tmp_path / "other.yaml", *clusters)
+        data = answer(start, "map", "check", mapfile, "--trace", tmp_path / "spread.csv")["mapping"]
+        seconds = data["trace"]["duration_s"]
+        found = {
+            (row["topic"], row["publisher_cluster"], row["receiver_cluster"]): (
+                *(round(row[key] * seconds, 3) for key in ("messages_per_s", "bytes_per_s")),
+            )
+            for row in data["crossings"]
+        }
+        assert found == {key: (messages[key[0]], sizes[key[0]]) for key in expected}
+        assert data["crossing_topics"] == len(expected)
+        received = Counter[int]()
+        for topic, _, cluster in expected:
+            received[cluster] += messages[topic]
+        threads = data["trace"]["receive_threads"]
+        assert {row["cluster"]: round(row["messages_per_s"] * seconds, 3) for row in threads} == (
+            received
+        )
+        peaks = data["trace"]["peak_smem_bytes"]
+        assert set(peaks) == ({"1", "2", "3"} if clusters == (1, 2, 3) else set())
+        cores = {row["cluster"]: row["cpu_share"] for row in data["trace"]["cores"]}
+        assert set(cores) == set(clusters)
+        assert all(0 < share < 1.5 * len(PIPELINE) for share in cores.values())
+    # What is counted as crossing has been sent; the trace may begin or end within a publish.
+    sent = sends(events)
+    assert set(sent) == placements[1, 2, 3]
+    for topic, *places in placements[1, 2, 3]:
+        numbers = {event["number"] for event in writes if event["topic"] == topic}
+        assert len(sent[topic, places[0], places[1]] ^ numbers) <= 2

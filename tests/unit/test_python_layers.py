@@ -30,7 +30,7 @@ LAYERS = [
     (".process", ".ros", ".trace"),
     (".interfaces", ".platform", ".routes"),
     (".mapfile", ".picture", ".transport"),
-    (".create", ".emcos", ".launch", ".view", "rmw_manycore_bridge"),
+    (".create", ".emcos", ".launch", ".mapping", ".view", "rmw_manycore_bridge"),
     (".recording", "rmw_manycore_py"),
     (".ndt",),
     (".bench",),

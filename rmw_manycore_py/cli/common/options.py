@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -42,6 +43,11 @@ any_platform_option = click.option(
     callback=_checked,
     shell_complete=_complete_platforms,
     help="Only the platform of this name.",
+)
+rates_option = click.option(
+    "--trace",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Show rates and loads of this trace, of `run --trace` or `trace save`.",
 )
 types_option = click.option("-t", "--show-types", is_flag=True, help="Also show the types.")
 count_option = click.option(

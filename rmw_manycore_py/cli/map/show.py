@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 import shlex
+from collections import defaultdict
 from pathlib import Path
 
 import click
 
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
-from rmw_manycore_py.cli.common.options import examples, json_option
+from rmw_manycore_py.cli.common.options import examples, json_option, rates_option
 from rmw_manycore_py.cli.common.printing import (
+    counted,
     echo,
     new_table,
     print_json,
@@ -18,29 +20,46 @@ from rmw_manycore_py.cli.common.printing import (
     print_table,
     size_text,
 )
+from rmw_manycore_py.cli.common.rates import load_rates
 from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
 from rmw_manycore_py.mapfile.placing.show import as_data, rules_in_words
+from rmw_manycore_py.mapping import Facts, facts_of
+from rmw_manycore_py.mapping.rates import TracedFacts
+from rmw_manycore_py.mapping.words import as_data as facts_as_data
+from rmw_manycore_py.mapping.words import verdict
 from rmw_manycore_py.platform.topology import as_host_cpu, host_cpu_text
 from rmw_manycore_py.routes.route import DIRECTIONS
 
 
-@click.command("show", epilog=examples("manycore map show three_nodes"))
+@click.command(
+    "show",
+    epilog=examples(
+        "manycore map show three_nodes", "manycore map show three_nodes --trace trace.json"
+    ),
+)
 @mapfile_argument()
+@rates_option
 @json_option
-def command(mapfile: Path, as_json: bool) -> None:
+def command(mapfile: Path, trace: Path | None, as_json: bool) -> None:
     """Show the placement of MAPFILE.
 
-    Nodes, topic table, memory of the clusters.
+    Nodes, topic table, what crosses clusters, memory when the nodes have started; with a trace,
+    rates and loads.
     """
     placement = resolve(load_mapfile(mapfile), to_start=False)
+    facts = facts_of(placement, load_rates(trace) if trace else None)
     if as_json:
-        print_json(as_data(placement))
+        print_json({**as_data(placement), "mapping": facts_as_data(facts)})
         return
     print_notices(placement.notices)
     _show_nodes(placement)
     _show_rules(placement)
     _show_topics(placement)
-    _show_memory(placement)
+    _show_crossings(facts)
+    _show_memory(facts)
+    if facts.traced:
+        _show_loads(facts.traced)
+    echo(f"\nverdict: {verdict(facts)}")
 
 
 def _show_nodes(placement: Placement) -> None:
@@ -91,9 +110,47 @@ def _show_topics(placement: Placement) -> None:
     print_table(table)
 
 
-def _show_memory(placement: Placement) -> None:
+def _show_crossings(facts: Facts) -> None:
+    if not facts.crossings:
+        return
+    echo("\nbetween clusters")
+    rates = ("#messages/s", "#bytes/s") if facts.traced else ()
+    table = new_table("topic", "#from", "#to", *rates)
+    for one in facts.crossings:
+        row = [one.topic, str(one.publisher_cluster), str(one.receiver_cluster)]
+        if facts.traced:
+            messages, size_bytes = facts.per_s(one.messages), facts.per_s(one.size_bytes)
+            row += [f"{messages or 0:.1f}", size_text(round(size_bytes or 0))]
+        table.add_row(*row)
+    print_table(table)
+
+
+def _show_memory(facts: Facts) -> None:
     echo("\nmemory")
-    table = new_table("#cluster", "#SMEM", "#fixed topic DSMs")
-    for memory in placement.memory:
-        table.add_row(str(memory.cluster), size_text(memory.smem_size), size_text(memory.used))
+    peaks = facts.traced.peak_smem_bytes if facts.traced else {}
+    columns = ("#cluster", "#SMEM", "#fixed topic DSMs", "#nodes", "#queues", "#total")
+    table = new_table(*columns, *(("#most in the trace",) if peaks else ()))
+    for memory in facts.memory:
+        sizes = [memory.smem_size, memory.used, memory.nodes, memory.queues, memory.total]
+        sizes += [peaks.get(memory.cluster, 0)] if peaks else []
+        table.add_row(str(memory.cluster), *map(size_text, sizes))
+    print_table(table)
+    by_size = defaultdict(list)
+    for name, largest in facts.growing.items():
+        by_size[largest].append(name)
+    for largest, names in sorted(by_size.items()):
+        known = f"with messages up to {size_text(largest)}" if largest else "of unknown size"
+        echo(f"not counted, {counted(len(names), 'topic')} {known}: {', '.join(names)}")
+
+
+def _show_loads(traced: TracedFacts) -> None:
+    echo(f"\nload in {traced.recorded.seconds:.1f} s of the trace")
+    table = new_table("#cluster", "core", "#messages/s", "#CPU", "nodes")
+    for core in traced.cores:
+        cluster, number = map(str, core.core)
+        table.add_row(cluster, number, "", f"{core.cpu_share:.1%}", ", ".join(core.nodes))
+    for thread in traced.receive_threads:
+        share = "-" if thread.cpu_share is None else f"{thread.cpu_share:.1%}"
+        rate = f"{thread.messages_per_s:.1f}"
+        table.add_row(str(thread.cluster), "receive thread", rate, share, "")
     print_table(table)

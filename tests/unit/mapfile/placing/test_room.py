@@ -13,7 +13,7 @@ import yaml
 from click.testing import CliRunner
 
 from rmw_manycore_py.cli.main import cli
-from rmw_manycore_py.errors import EXIT_BAD_INPUT
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, EXIT_FAILURE
 from rmw_manycore_py.mapfile import check
 from rmw_manycore_py.mapfile.placing.moves import RoomError
 
@@ -144,3 +144,20 @@ def test_json_has_the_moves(tmp_path: Path) -> None:
     assert data["problems"][0]["found"] == "15 nodes"
     assert data["moves"] == {"n14": 2}
     assert data["room"][0] == {"cluster": 2, "cores": 14, "size_bytes": 3670016}
+
+
+@pytest.mark.parametrize(("nodes", "status"), [(7, 0), (9, 0), (11, EXIT_FAILURE)])
+def test_nodes_take_memory_too(nodes: int, status: int, tmp_path: Path) -> None:
+    """They may start with 9 nodes of 100 KiB in 1 MiB, if those with rings come first."""
+    data = mapfile({f"n{i}": node(1) for i in range(nodes)})
+    data["platform"] = {"profile": "coolidge", "smem_size": "1MiB"}
+    path = write(tmp_path, data)
+    result = CliRunner().invoke(cli, ["map", "check", str(path)])
+    assert result.exit_code == status, result.output
+    words = {7: "it fits, ", 9: "it may not fit, ", 11: "it does not fit, "}
+    assert f"verdict: {words[nodes]}cluster 1 " in result.output
+    answer = json.loads(CliRunner().invoke(cli, ["map", "check", str(path), "--json"]).stdout)
+    assert ("moves" in answer) == (nodes > 7)
+    if nodes > 7:
+        again = write(tmp_path, moved(data, answer["moves"]))
+        assert "verdict: it fits, " in CliRunner().invoke(cli, ["map", "check", str(again)]).output

@@ -1,0 +1,173 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Numbers in a trace: messages and bytes of each publisher, and CPU time of each process."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.mapping.crossing import Publication, Traffic
+from rmw_manycore_py.platform.monitor.graph import EVERY_NODES_TOPICS
+from rmw_manycore_py.trace.events import Endpoint, Events, Kind, Process, Trace, endpoint_ids
+from rmw_manycore_py.trace.flows import merged
+from rmw_manycore_py.trace.names import nodes_of
+from rmw_manycore_py.trace.pairs import split_by
+
+_NS_PER_S = 1e9
+_NEVER_NS = 1 << 63
+
+
+class Count(NamedTuple):
+    """Publications of a publisher."""
+
+    messages: int
+    size_bytes: int
+    largest_bytes: int
+
+
+@dataclass(frozen=True)
+class ProcessLoad:
+    """CPU time of a process; `cpu_share` 1.0 is one CPU."""
+
+    process: Process
+    nodes: tuple[str, ...]
+    cpu_share: float
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """Numbers of a trace between the start of its last node and its last publication."""
+
+    trace: Trace
+    begin_ns: int
+    end_ns: int
+
+    @classmethod
+    def of(cls, trace: Trace) -> Recorded:
+        """Return the numbers of a trace; raise ManycoreError if nothing was published.
+
+        A node that starts again does not count as the last one. What a node logs while it ends
+        does not count as the last publication.
+        """
+        begin_ns, end_ns = _publishing_ns(trace)
+        last_join_ns = max(_joins_ns(trace), default=begin_ns)
+        return cls(trace, last_join_ns if last_join_ns < end_ns else begin_ns, end_ns)
+
+    @property
+    def seconds(self) -> float:
+        """Length of the time that is counted."""
+        return (self.end_ns - self.begin_ns) / _NS_PER_S
+
+    def per_s(self, amount: float) -> float:
+        """Return a rate; 0 if all happened at one instant."""
+        return amount / self.seconds if self.seconds else 0.0
+
+    @cached_property
+    def publications(self) -> dict[int, Count]:
+        """Publications of topics by endpoint."""
+        found: dict[int, Count] = {}
+        for events in _events(self.trace, Kind.WRITE):
+            own = self._within(events)
+            ids, inverse = np.unique(endpoint_ids(own), return_inverse=True)
+            for number, endpoint in enumerate(ids.tolist()):
+                sizes = own["value"][inverse == number].astype(np.int64)
+                known = found.get(endpoint, Count(0, 0, 0))
+                if self.topic(endpoint) is not None:
+                    found[endpoint] = Count(
+                        known.messages + len(sizes),
+                        known.size_bytes + int(sizes.sum()),
+                        max(known.largest_bytes, int(sizes.max())),
+                    )
+        return found
+
+    def topic(self, endpoint: int) -> Endpoint | None:
+        """Return an endpoint that is of a topic, not of a service."""
+        named = self.trace.endpoints.get(endpoint)
+        return named if named is not None and named.role == "topic" else None
+
+    def subscriptions(self) -> Iterator[Endpoint]:
+        """Yield the subscriptions of topics that have an event in the trace."""
+        for endpoint in self.trace.endpoints:
+            named = self.topic(endpoint)
+            if named is not None and not named.is_publisher:
+                yield named
+
+    def traffic(self) -> Traffic:
+        """Return the traffic between the clusters of the trace."""
+        publications = [
+            Publication(named.topic, named.cluster, count.messages, count.size_bytes)
+            for endpoint, count in self.publications.items()
+            if (named := self.topic(endpoint)) is not None
+        ]
+        return Traffic.of(publications, ((one.topic, one.cluster) for one in self.subscriptions()))
+
+    def loads(self) -> Iterator[ProcessLoad]:
+        """Yield the CPU usage of each process."""
+        for process in self.trace.processes:
+            yield ProcessLoad(
+                process, tuple(nodes_of(self.trace, process)), self.per_s(self._cpu_s(process))
+            )
+
+    def peak_smem_bytes(self) -> dict[int, int]:
+        """Return the most SMEM that was in use, by cluster, with all that had grown."""
+        samples = merged(list(self.trace.threads()), (Kind.SMEM,))
+        return {
+            int(samples["number"][own[0]]): int(samples["value"][own].max())
+            for own in split_by(samples["number"])
+        }
+
+    def receive_cpu_s(self) -> float | None:
+        """Return the CPU time of a receive thread per message; None without a message."""
+        received = sum(len(self._within(one)) for one in _events(self.trace, Kind.RECEIVE))
+        threads = [one for one in self.trace.processes if one.is_receive_thread]
+        return sum(map(self._cpu_s, threads)) / received if received else None
+
+    def _cpu_s(self, process: Process) -> float:
+        """Return the CPU time between samples, which are of the time used so far."""
+        samples = merged([(process, thread) for thread in process.threads], (Kind.CPU,))
+        if not len(samples):
+            return 0.0
+        used = np.interp([self.begin_ns, self.end_ns], samples["time_ns"], samples["value"])
+        return float(used[1] - used[0]) / _NS_PER_S
+
+    def _within(self, events: Events) -> Events:
+        times = events["time_ns"]
+        return events[(times >= self.begin_ns) & (times <= self.end_ns)]
+
+
+def _events(trace: Trace, kind: Kind) -> Iterator[Events]:
+    """Yield the events of a kind, thread by thread."""
+    for _, thread in trace.threads():
+        yield thread.events[thread.events["kind"] == kind]
+
+
+def _publishing_ns(trace: Trace) -> tuple[int, int]:
+    """Return the times of the first and the last message, of topics if there are any."""
+    found: dict[bool, list[int]] = {True: [], False: []}
+    for events in _events(trace, Kind.WRITE):
+        for own in split_by(endpoint_ids(events)):
+            endpoint = int(endpoint_ids(events[own[:1]])[0])
+            named = trace.endpoints.get(endpoint)
+            is_topic = named is not None and named.role == "topic"
+            is_own = is_topic and trace.topic_of(endpoint) not in EVERY_NODES_TOPICS
+            found[is_own] += events["time_ns"][own[[0, -1]]].tolist()
+    chosen = found[True] or found[False]
+    if not chosen:
+        raise ManycoreError("the trace has no published message: trace for longer")
+    return min(chosen), max(chosen)
+
+
+def _joins_ns(trace: Trace) -> Iterable[int]:
+    """Return when a process has first joined at each place that has a core."""
+    joins: dict[tuple[int, int, str], int] = {}
+    for process in trace.processes:
+        events = merged([(process, thread) for thread in process.threads], (Kind.JOIN,))
+        if len(events) and process.core is not None:
+            place = (process.cluster, process.core, process.label)
+            joins[place] = min(int(events["time_ns"][0]), joins.get(place, _NEVER_NS))
+    return joins.values()
