@@ -15,6 +15,7 @@ import numpy as np
 from rmw_manycore_py.trace.chains import Chain, Messages, Passage
 from rmw_manycore_py.trace.matching import Matching
 
+TOTAL = "total"  # part that is the sum of the others
 _NS_PER_US = 1000
 _Z_95 = 1.96
 
@@ -97,7 +98,7 @@ def _latency(chain: Chain, nodes: tuple[str, ...], passages: list[Passage]) -> C
     left = [p.bridged_ns - p.callback_ns[-1] for p in passages if p.bridged_ns is not None]
     if len(left) == len(passages):
         parts.append(_part(f"bridge out {chain[-1]}", left))
-    parts.append(_part("total", [_total_ns(p) for p in passages]))
+    parts.append(_part(TOTAL, [_total_ns(p) for p in passages]))
     parts.append(_part("reaction", _reactions_ns(passages)))
     parts.append(_part("data age", _ages_ns(passages)))
     return ChainLatency(chain, nodes, tuple(parts))

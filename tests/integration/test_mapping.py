@@ -169,3 +169,21 @@ def test_counts_are_those_of_the_raw_events(start, tmp_path, platform) -> None:
     for topic, *places in placements[1, 2, 3]:
         numbers = {event["number"] for event in writes if event["topic"] == topic}
         assert len(sent[topic, places[0], places[1]] ^ numbers) <= 2
+
+
+def test_traces_of_two_mappings_are_compared(start, tmp_path, platform) -> None:
+    files = []
+    for name, clusters in {"spread": (1, 2, 3), "together": (2, 2, 2)}.items():
+        files.append(tmp_path / f"{name}.csv")
+        events = traced(start, write_pipeline(tmp_path / "map.yaml", *clusters), files[-1])
+        assert len(sends(events)) == len(set(clusters)) - 1
+    compare = start(manycore_command("trace", "compare", *files))
+    assert compare.wait() == 0
+    heading, chain, mapping = compare.output.splitlines()
+    assert heading.split() == ["before", "after", "verdict", "chain"]
+    assert chain.endswith("/image_raw (/image_filter) > /image_inverted (/image_sink)")
+    assert mapping.startswith("between clusters: ")
+    assert "(100% of all messages) before, 0.0 messages/s and 0 B/s (0% of all messages) after" in (
+        mapping
+    )
+    assert mapping.endswith(": less")
