@@ -24,6 +24,7 @@ VERBS = {
     "top": "rmw_manycore_py.cli.top:command",
     "view": "rmw_manycore_py.cli.view:command",
     "trace": "rmw_manycore_py.cli.trace:command",
+    "profile": "rmw_manycore_py.cli.profile:command",
     "topic": "rmw_manycore_py.cli.topic:command",
     "node": "rmw_manycore_py.cli.node:command",
     "service": "rmw_manycore_py.cli.service:command",
@@ -47,6 +48,7 @@ SECTIONS = {
         "run", "up", "ps", "logs", "restart", "attach", "stop", "demo", "map", "create", "bridge",
     ),
     "Look": ("status", "top", "view", "trace"),
+    "Plan": ("profile",),
     "ROS 2": (
         "topic", "node", "service", "action", "param", "lifecycle", "interface", "component", "bag",
     ),

@@ -1,0 +1,60 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore profile import`."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.output_file import OutputFile
+from rmw_manycore_py.cli.common.printing import echo
+from rmw_manycore_py.cli.profile.text import summary_text
+from rmw_manycore_py.profile.files import save
+from rmw_manycore_py.profile.ros2_tracing import Window, import_trace
+
+
+@click.command(
+    "import",
+    epilog=examples(
+        "manycore profile import ~/.ros/tracing/session -o app.profile.json",
+        "manycore profile import trace --end 30 -o first_half.profile.json",
+    ),
+)
+@click.argument("source", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    type=OutputFile(".json"),
+    default="app.profile.json",
+    show_default=True,
+    help="File to write.",
+)
+@click.option(
+    "--begin",
+    "begin_s",
+    type=click.FloatRange(min=0),
+    default=0.0,
+    metavar="S",
+    help="Skip callbacks of the first S seconds of a trace.",
+)
+@click.option(
+    "--end",
+    "end_s",
+    type=click.FloatRange(min=0, min_open=True),
+    default=math.inf,
+    metavar="S",
+    help="Skip callbacks after the first S seconds of a trace.",
+)
+def command(source: Path, output: Path, begin_s: float, end_s: float) -> None:
+    """Make a profile from measurements of others.
+
+    SOURCE is the directory of an LTTng trace of ros2_tracing or CARET.
+    """
+    if begin_s >= end_s:
+        raise click.UsageError(f"expected --begin before --end, found {begin_s:g} and {end_s:g}")
+    profile = import_trace(source, Window(begin_s, end_s))
+    save(profile, output)
+    echo(f"{output}: {summary_text(profile)}")

@@ -1,0 +1,105 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Executions of callbacks, and the publications during them."""
+
+from __future__ import annotations
+
+from array import array
+from collections import defaultdict
+from dataclasses import dataclass
+
+from rmw_manycore_py.profile.babeltrace import Event, ThreadId
+from rmw_manycore_py.profile.entities import Entities
+from rmw_manycore_py.profile.model import Coverage
+from rmw_manycore_py.profile.seen import Address, CallbackSeen, PublisherSeen, Registration
+
+
+@dataclass
+class _Running:
+    """A callback that runs on a thread."""
+
+    at: int
+    callback: CallbackSeen
+    begin_ns: int
+    encloses: bool = False
+
+
+class Executions:
+    """Follows each thread from begin to end of its callbacks."""
+
+    def __init__(self, entities: Entities) -> None:
+        self.callbacks: list[CallbackSeen] = []
+        self.tids: dict[int, set[int]] = defaultdict(set)  # by pid
+        self._entities = entities
+        self._current: dict[Address, tuple[Registration | None, CallbackSeen]] = {}
+        self._running: dict[ThreadId, list[_Running]] = defaultdict(list)
+        self._counts = dict.fromkeys(Coverage.model_fields, 0)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """What is not part of a callback's statistics; see Coverage."""
+        running = sum(map(len, self._running.values()))
+        return {**self._counts, "unfinished": self._counts["unfinished"] + running}
+
+    def begin(self, event: Event) -> None:
+        """Handle the begin of a callback."""
+        running = self._running[event.thread]
+        if running:
+            running[-1].encloses = True
+        at = event.handle
+        running.append(_Running(at, self._callback((event.thread.pid, at)), event.time_ns))
+
+    def end(self, event: Event) -> None:
+        """Handle the end of a callback. Those begun inside it have ended, too."""
+        running = self._running[event.thread]
+        at = event.handle
+        if all(one.at != at for one in running):
+            self._counts["begun_before"] += 1
+            return
+        while (one := running.pop()).at != at:
+            self._counts["unfinished"] += 1
+        if one.encloses:
+            self._counts["enclosing"] += 1
+            return
+        pid, tid = event.thread
+        self.tids[pid].add(tid)
+        one.callback.tids.add(tid)
+        one.callback.begins_ns.append(one.begin_ns)
+        one.callback.durations_ns.append(event.time_ns - one.begin_ns)
+
+    def publish(self, event: Event) -> None:
+        """Handle a publication: it belongs to a callback that runs on the thread, if one does."""
+        pid, tid = event.thread
+        self.tids[pid].add(tid)
+        publisher = self._entities.publisher((pid, event.handle))
+        if publisher is None:
+            self._counts["publications_of_unknown_publishers"] += 1
+            return
+        publisher.times_ns.append(event.time_ns)
+        running = self._running[event.thread]
+        if not running:
+            publisher.outside_callbacks += 1
+            self._counts["publications_outside_callbacks"] += 1
+            return
+        cause = self._cause(publisher, running)
+        offsets_ns = cause.callback.offsets_ns.get(publisher)
+        if offsets_ns is None:
+            offsets_ns = cause.callback.offsets_ns[publisher] = array("q")
+        offsets_ns.append(event.time_ns - cause.begin_ns)
+
+    def _cause(self, publisher: PublisherSeen, running: list[_Running]) -> _Running:
+        """Return the callback of the publisher's node; else, or of several, the innermost."""
+        own = [one for one in running if one.callback.trigger.node is publisher.node]
+        if len(own) != 1:
+            self._counts["ambiguous_publications"] += 1
+        return (own or running)[-1]
+
+    def _callback(self, at: Address) -> CallbackSeen:
+        registration = self._entities.registration(at)
+        known = self._current.get(at)
+        if known is not None and known[0] is registration:
+            return known[1]
+        trigger = self._entities.trigger(registration)
+        callback = CallbackSeen(at[0], trigger, registration.symbol if registration else "")
+        self.callbacks.append(callback)
+        self._current[at] = registration, callback
+        return callback

@@ -1,0 +1,72 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Profile files: JSON, with one line per callback, publisher and so on."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from rmw_manycore_py.errors import FileError, ManycoreError, Problem
+from rmw_manycore_py.profile.model import Profile
+
+
+def save(profile: Profile, path: Path) -> None:
+    """Write a profile. Replaces an existing file only when complete.
+
+    :raises ManycoreError: if the file cannot be written.
+    """
+    written: Path | None = None
+    try:
+        descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        written = Path(name)
+        with open(descriptor, "w", encoding="utf-8") as file:
+            file.write(to_text(profile))
+            os.fchmod(file.fileno(), 0o666 & ~_umask())
+        written.replace(path)
+    except OSError as error:
+        raise ManycoreError(f"{path}: cannot be written: {error.strerror or error}") from error
+    finally:
+        if written is not None:
+            written.unlink(missing_ok=True)
+
+
+def load(path: Path) -> Profile:
+    """Read a profile.
+
+    :raises ManycoreError: if it cannot be read; FileError if it is no profile.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise ManycoreError(f"{path}: cannot be read: {error.strerror or error}") from error
+    try:
+        return Profile.model_validate_json(content)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(map(str, first["loc"]))
+        problem = Problem(path, 0, key, "a profile of manycore profile", first["msg"])
+        raise FileError(problem) from error
+
+
+def to_text(profile: Profile) -> str:
+    """Return the content of a profile's file."""
+    sections = [f'"{key}": {_section(value)}' for key, value in profile.model_dump().items()]
+    return "{\n" + ",\n".join(sections) + "\n}\n"
+
+
+def _section(value: Any) -> str:
+    if isinstance(value, tuple) and value and isinstance(value[0], dict):
+        rows = ",\n".join(json.dumps(row, separators=(",", ":")) for row in value)
+        return f"[\n{rows}\n]"
+    return json.dumps(value)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,174 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Profiles of applications that ros2_tracing or CARET traced with LTTng."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from rmw_manycore_py.errors import FileError, Problem
+from rmw_manycore_py.profile.babeltrace import Reader
+from rmw_manycore_py.profile.distributions import SHARES, distribution_of, intervals_of
+from rmw_manycore_py.profile.entities import Entities
+from rmw_manycore_py.profile.executions import Executions
+from rmw_manycore_py.profile.model import (
+    Callback,
+    CallbackGroup,
+    Coverage,
+    Executor,
+    Node,
+    Output,
+    Process,
+    Profile,
+    Publisher,
+    Subscription,
+)
+from rmw_manycore_py.profile.seen import CallbackSeen, PublisherSeen
+
+
+@dataclass(frozen=True)
+class Window:
+    """A part of a trace, in seconds from its first event."""
+
+    begin_s: float = 0.0
+    end_s: float = math.inf
+
+
+def import_trace(path: Path, window: Window) -> Profile:
+    """Return the profile of a CTF trace, a directory.
+
+    :raises ManycoreError: if babeltrace2 is missing; FileError if the trace cannot be used.
+    """
+    if not any(path.rglob("metadata")):
+        raise _problem(path, "a CTF trace, a directory with a file metadata")
+    reader = Reader(path)
+    entities = Entities()
+    executions = Executions(entities)
+    span = _read(reader, entities, executions, window)
+    if not span.events:
+        raise _problem(path, "events of ros2_tracing (ros2:...)")
+    return _profile(reader, entities, executions, span)
+
+
+@dataclass(frozen=True)
+class _Span:
+    """What was read of a trace."""
+
+    events: int
+    begin_ns: int
+    end_ns: int
+
+    @property
+    def duration_ns(self) -> int:
+        return max(self.end_ns - self.begin_ns, 0)
+
+
+def _read(reader: Reader, entities: Entities, executions: Executions, window: Window) -> _Span:
+    handlers = {
+        "ros2:callback_start": executions.begin,
+        "ros2:callback_end": executions.end,
+        "ros2:rcl_publish": executions.publish,
+    }
+    count = first_ns = last_ns = 0
+    begin_ns, end_ns = 0.0, math.inf
+    for event in reader.events():
+        last_ns = event.time_ns
+        if not count:
+            first_ns = last_ns
+            begin_ns, end_ns = (first_ns + s * 1e9 for s in (window.begin_s, window.end_s))
+        count += 1
+        handler = handlers.get(event.name)
+        if handler is None:
+            entities.handle(event)
+        elif begin_ns <= last_ns <= end_ns:
+            handler(event)
+    return _Span(count, round(max(begin_ns, first_ns)), round(min(end_ns, last_ns)))
+
+
+def _profile(reader: Reader, entities: Entities, executions: Executions, span: _Span) -> Profile:
+    pids = {pid: index for index, pid in enumerate(reader.process_names)}
+    tids = {pid: sorted(executions.tids.get(pid, ())) for pid in pids}
+    return Profile(
+        source="ros2_tracing",
+        events=span.events,
+        duration_ns=span.duration_ns,
+        quantile_shares=SHARES,
+        processes=tuple(
+            Process(name=name, threads=len(tids[pid])) for pid, name in reader.process_names.items()
+        ),
+        nodes=tuple(Node(name=node.name, process=pids[node.pid]) for node in entities.nodes),
+        publishers=tuple(map(_publisher, entities.publishers)),
+        subscriptions=tuple(
+            Subscription(node=_index(one.node), topic=one.name, queue_depth=one.queue_depth)
+            for one in entities.subscriptions
+        ),
+        executors=tuple(
+            Executor(name=f"executor_{one.index}", kind=one.kind) for one in entities.executors
+        ),
+        groups=tuple(
+            CallbackGroup(name=f"group_{one.index}", kind=one.kind, executor=_index(one.executor))
+            for one in entities.groups
+        ),
+        callbacks=tuple(
+            _callback(one, pids[one.pid], tids[one.pid], span)
+            for one in executions.callbacks
+            if one.durations_ns
+        ),
+        chains=(),
+        coverage=Coverage(**{**executions.counts, "discarded_events": reader.discarded}),
+    )
+
+
+def _publisher(one: PublisherSeen) -> Publisher:
+    return Publisher(
+        node=_index(one.node),
+        topic=one.topic,
+        queue_depth=one.queue_depth,
+        publications=len(one.times_ns),
+        outside_callbacks=one.outside_callbacks,
+        interval_ns=intervals_of(one.times_ns),
+        size_bytes=None,
+    )
+
+
+def _callback(one: CallbackSeen, process: int, tids: list[int], span: _Span) -> Callback:
+    trigger = one.trigger
+    executions = len(one.durations_ns)
+    return Callback(
+        kind=trigger.kind,
+        node=_index(trigger.node),
+        trigger=trigger.name,
+        subscription=trigger.index,
+        period_ns=trigger.period_ns,
+        symbol=one.symbol,
+        process=process,
+        threads=tuple(sorted(map(tids.index, one.tids))),
+        group=_index(trigger.group),
+        executions=executions,
+        rate_hz=executions * 1e9 / span.duration_ns if span.duration_ns else None,
+        wall_ns=distribution_of(one.durations_ns),
+        cpu_ns=None,
+        interval_ns=intervals_of(one.begins_ns),
+        publishes=tuple(
+            Output(
+                publisher=publisher.index,
+                count=len(offsets_ns),
+                offset_ns=distribution_of(offsets_ns),
+            )
+            for publisher, offsets_ns in one.offsets_ns.items()
+        ),
+    )
+
+
+class _Indexed(Protocol):
+    index: int
+
+
+def _index(one: _Indexed | None) -> int | None:
+    return None if one is None else one.index
+
+
+def _problem(path: Path, expected: str) -> FileError:
+    return FileError(Problem(path, 0, "", expected, "none"))
