@@ -102,6 +102,7 @@ missing_for_tests() {
   command -v spin >/dev/null || echo spin
   command -v tcc >/dev/null || echo tcc
   command -v ip >/dev/null || echo iproute2
+  command -v babeltrace2 >/dev/null || echo babeltrace2
   command -v zsh >/dev/null || echo zsh
   command -v fish >/dev/null || echo fish
   command -v chromedriver >/dev/null || echo chromium chromium-driver

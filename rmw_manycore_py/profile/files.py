@@ -9,10 +9,17 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from rmw_manycore_py.errors import FileError, ManycoreError, Problem
-from rmw_manycore_py.profile.model import Profile
+from rmw_manycore_py.profile.model import FORMAT, VERSION, Profile
+
+
+class _Head(BaseModel):
+    """What a file of any version has."""
+
+    format: str
+    version: int
 
 
 def save(profile: Profile, path: Path) -> None:
@@ -45,12 +52,18 @@ def load(path: Path) -> Profile:
     except OSError as error:
         raise ManycoreError(f"{path}: cannot be read: {error.strerror or error}") from error
     try:
+        head = _Head.model_validate_json(content)
+        if (head.format, head.version) != (FORMAT, VERSION):
+            raise _problem(path, "version", str(VERSION), f"{head.version} of {head.format}")
         return Profile.model_validate_json(content)
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(map(str, first["loc"]))
-        problem = Problem(path, 0, key, "a profile of manycore profile", first["msg"])
-        raise FileError(problem) from error
+        raise _problem(path, key, "a profile of manycore profile", first["msg"]) from error
+
+
+def _problem(path: Path, key: str, expected: str, found: str) -> FileError:
+    return FileError(Problem(path, 0, key, expected, found))
 
 
 def to_text(profile: Profile) -> str:

@@ -141,8 +141,8 @@ class Coverage(_Row):
 class Profile(_Row):
     """What an application does, apart from where it runs."""
 
-    format: Literal["manycore profile"] = FORMAT
-    version: Literal[1] = VERSION
+    format: str
+    version: int
     source: Source
     events: Count | None
     duration_ns: Count | None

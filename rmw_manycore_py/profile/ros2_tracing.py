@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -14,6 +13,8 @@ from rmw_manycore_py.profile.distributions import SHARES, distribution_of, inter
 from rmw_manycore_py.profile.entities import Entities
 from rmw_manycore_py.profile.executions import Executions
 from rmw_manycore_py.profile.model import (
+    FORMAT,
+    VERSION,
     Callback,
     CallbackGroup,
     Coverage,
@@ -27,13 +28,15 @@ from rmw_manycore_py.profile.model import (
 )
 from rmw_manycore_py.profile.seen import CallbackSeen, PublisherSeen
 
+_FOREVER = 1 << 62
+
 
 @dataclass(frozen=True)
 class Window:
-    """A part of a trace, in seconds from its first event."""
+    """A part of a trace, from its first event on."""
 
-    begin_s: float = 0.0
-    end_s: float = math.inf
+    begin_ns: int = 0
+    end_ns: int | None = None
 
 
 def import_trace(path: Path, window: Window) -> Profile:
@@ -57,12 +60,7 @@ class _Span:
     """What was read of a trace."""
 
     events: int
-    begin_ns: int
-    end_ns: int
-
-    @property
-    def duration_ns(self) -> int:
-        return max(self.end_ns - self.begin_ns, 0)
+    duration_ns: int
 
 
 def _read(reader: Reader, entities: Entities, executions: Executions, window: Window) -> _Span:
@@ -72,25 +70,26 @@ def _read(reader: Reader, entities: Entities, executions: Executions, window: Wi
         "ros2:rcl_publish": executions.publish,
     }
     count = first_ns = last_ns = 0
-    begin_ns, end_ns = 0.0, math.inf
+    end_ns = _FOREVER if window.end_ns is None else window.end_ns
     for event in reader.events():
-        last_ns = event.time_ns
         if not count:
-            first_ns = last_ns
-            begin_ns, end_ns = (first_ns + s * 1e9 for s in (window.begin_s, window.end_s))
+            first_ns = event.time_ns
+        last_ns = event.time_ns
         count += 1
         handler = handlers.get(event.name)
         if handler is None:
             entities.handle(event)
-        elif begin_ns <= last_ns <= end_ns:
+        elif window.begin_ns <= last_ns - first_ns <= end_ns:
             handler(event)
-    return _Span(count, round(max(begin_ns, first_ns)), round(min(end_ns, last_ns)))
+    return _Span(count, max(min(last_ns - first_ns, end_ns) - window.begin_ns, 0))
 
 
 def _profile(reader: Reader, entities: Entities, executions: Executions, span: _Span) -> Profile:
     pids = {pid: index for index, pid in enumerate(reader.process_names)}
     tids = {pid: sorted(executions.tids.get(pid, ())) for pid in pids}
     return Profile(
+        format=FORMAT,
+        version=VERSION,
         source="ros2_tracing",
         events=span.events,
         duration_ns=span.duration_ns,

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import click
@@ -44,17 +43,17 @@ from rmw_manycore_py.profile.ros2_tracing import Window, import_trace
     "--end",
     "end_s",
     type=click.FloatRange(min=0, min_open=True),
-    default=math.inf,
     metavar="S",
     help="Skip callbacks after the first S seconds of a trace.",
 )
-def command(source: Path, output: Path, begin_s: float, end_s: float) -> None:
+def command(source: Path, output: Path, begin_s: float, end_s: float | None) -> None:
     """Make a profile from measurements of others.
 
     SOURCE is the directory of an LTTng trace of ros2_tracing or CARET.
     """
-    if begin_s >= end_s:
+    if end_s is not None and begin_s >= end_s:
         raise click.UsageError(f"expected --begin before --end, found {begin_s:g} and {end_s:g}")
-    profile = import_trace(source, Window(begin_s, end_s))
+    end_ns = None if end_s is None else round(end_s * 1e9)
+    profile = import_trace(source, Window(round(begin_s * 1e9), end_ns))
     save(profile, output)
     echo(f"{output}: {summary_text(profile)}")

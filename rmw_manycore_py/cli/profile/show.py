@@ -33,9 +33,9 @@ from rmw_manycore_py.profile.summary import summary_of
 )
 @json_option
 def command(profile: Path, busiest: int, as_json: bool) -> None:
-    """Show what PROFILE holds, and its busiest callbacks.
+    """Show the counts of a profile.
 
-    Times are in milliseconds.
+    Below are its busiest callbacks, with times in milliseconds.
     """
     loaded = load(profile)
     if as_json:
