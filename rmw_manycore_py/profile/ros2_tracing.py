@@ -44,8 +44,6 @@ def import_trace(path: Path, window: Window) -> Profile:
 
     :raises ManycoreError: if babeltrace2 is missing; FileError if the trace cannot be used.
     """
-    if not any(path.rglob("metadata")):
-        raise _problem(path, "a CTF trace, a directory with a file metadata")
     reader = Reader(path)
     entities = Entities()
     executions = Executions(entities)

@@ -12,7 +12,8 @@ from rmw_manycore_py.cli.common.output_file import OutputFile
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.profile.text import summary_text
 from rmw_manycore_py.profile.files import save
-from rmw_manycore_py.profile.ros2_tracing import Window, import_trace
+from rmw_manycore_py.profile.importing import import_source
+from rmw_manycore_py.profile.ros2_tracing import Window
 
 
 @click.command(
@@ -20,6 +21,7 @@ from rmw_manycore_py.profile.ros2_tracing import Window, import_trace
     epilog=examples(
         "manycore profile import ~/.ros/tracing/session -o app.profile.json",
         "manycore profile import trace --end 30 -o first_half.profile.json",
+        "manycore profile import caret_report -o autoware.profile.json",
     ),
 )
 @click.argument("source", type=click.Path(exists=True, file_okay=False, path_type=Path))
@@ -47,13 +49,14 @@ from rmw_manycore_py.profile.ros2_tracing import Window, import_trace
     help="Skip callbacks after the first S seconds of a trace.",
 )
 def command(source: Path, output: Path, begin_s: float, end_s: float | None) -> None:
-    """Make a profile from measurements of others.
+    """Make a profile from other tools' measurements.
 
-    SOURCE is the directory of an LTTng trace of ros2_tracing or CARET.
+    SOURCE is a directory: an LTTng trace of ros2_tracing or CARET, or a report of CARET with
+    architecture*.yaml and stats_node.yaml.
     """
     if end_s is not None and begin_s >= end_s:
         raise click.UsageError(f"expected --begin before --end, found {begin_s:g} and {end_s:g}")
     end_ns = None if end_s is None else round(end_s * 1e9)
-    profile = import_trace(source, Window(round(begin_s * 1e9), end_ns))
+    profile = import_source(source, Window(round(begin_s * 1e9), end_ns))
     save(profile, output)
     echo(f"{output}: {summary_text(profile)}")
