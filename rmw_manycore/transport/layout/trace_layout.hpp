@@ -35,8 +35,8 @@ enum class TraceKind : uint16_t {
   receive,     ///< a receive thread read an eMCOS message; value: cluster
   hint,        ///< before a hint is pushed; endpoint: subscription; value: publisher
   wake,        ///< before a process is notified; value: number of wake words
-  wait_begin,  ///< value: timeout in ns; UINT64_MAX = none
-  wait_end,    ///< value: 1 = some entity is ready
+  wait_begin,  ///< number: as of wait_end; value: timeout in ns; UINT64_MAX = none
+  wait_end,    ///< number: CPU time of the thread in ns, or 0; value: 1 = some entity is ready
   claim,       ///< value: publisher
   release,     ///< value: publisher
   request,     ///< a request was written or claimed; value: request number of the client
