@@ -9,6 +9,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+MS = 1_000_000
+NODE, PUBLISHER, SUBSCRIPTION, TIMER = 0x10, 0x20, 0x30, 0x40
+FROM_TOPIC, FROM_TIMER = 0x50, 0x60  # callbacks
+SYMBOL = 'f<{lambda()#1}, {lambda()#2}>::operator()("a")'
+
 # Fields of each event: x is an address, d a number, s a text.
 EVENTS = {
     "ros2:rcl_init": "context_handle:x version:s",
@@ -74,6 +79,50 @@ class Made(NamedTuple):
 def made(time_ns: int, name: str, pid: int, tid: int, /, **fields: Any) -> Made:
     name = name if ":" in name else f"ros2:{name}"
     return Made(time_ns, name, pid, tid, fields)
+
+
+def node(pid: int, name: str, at: int = NODE, topic: str = "/out") -> list[Made]:
+    """Return the init events of a node with a publisher, at time 0."""
+    return [
+        made(0, "rcl_publisher_init", pid, pid, publisher_handle=at + 1, node_handle=at,
+             topic_name="/rosout", queue_depth=1000),
+        made(0, "rcl_node_init", pid, pid, node_handle=at, node_name=name, namespace="/ns"),
+        made(0, "rcl_publisher_init", pid, pid, publisher_handle=PUBLISHER + at, node_handle=at,
+             topic_name=topic, queue_depth=3),
+    ]  # fmt: skip
+
+
+def subscription(pid: int, topic: str, callback: int = FROM_TOPIC, at_ns: int = 0) -> list[Made]:
+    """Return the init events of a subscription, in the order of rclcpp with intra-process."""
+    return [
+        made(at_ns, "rcl_subscription_init", pid, pid, subscription_handle=SUBSCRIPTION,
+             node_handle=NODE, topic_name=topic, queue_depth=7),
+        made(at_ns, "rclcpp_subscription_callback_added", pid, pid, subscription=SUBSCRIPTION + 1,
+             callback=callback),
+        made(at_ns, "rclcpp_callback_register", pid, pid, callback=callback, symbol=SYMBOL),
+        made(at_ns, "rclcpp_subscription_init", pid, pid, subscription_handle=SUBSCRIPTION,
+             subscription=SUBSCRIPTION + 1),
+    ]  # fmt: skip
+
+
+def timer(pid: int) -> list[Made]:
+    return [
+        made(0, "rcl_timer_init", pid, pid, timer_handle=TIMER, period=20 * MS),
+        made(0, "rclcpp_timer_callback_added", pid, pid, timer_handle=TIMER, callback=FROM_TIMER),
+        made(0, "rclcpp_timer_link_node", pid, pid, timer_handle=TIMER, node_handle=NODE),
+    ]
+
+
+def begin(ms: float, pid: int, tid: int, callback: int) -> Made:
+    return made(round(ms * MS), "callback_start", pid, tid, callback=callback)
+
+
+def end(ms: float, pid: int, tid: int, callback: int) -> Made:
+    return made(round(ms * MS), "callback_end", pid, tid, callback=callback)
+
+
+def published(ms: float, pid: int, tid: int, at: int = NODE) -> Made:
+    return made(round(ms * MS), "rcl_publish", pid, tid, publisher_handle=PUBLISHER + at)
 
 
 def write_trace(

@@ -20,7 +20,9 @@ from rmw_manycore_py.errors import FileError, ManycoreError, Problem
 _FIELD = re.compile(rb'(\w+) = ("(?:[^"\\]|\\.)*"|[^,{}\s]+)')
 _DISCARDED = re.compile(rb"Tracer discarded (\d+) event")
 _LOGGED_ERROR = re.compile(rb"^\S+ \S+ +\d+ +\d+ E \S+ \S+@\S+:\d+ (?:\[[^\]]*\] )?(.*)$", re.M)
-_PREFIXES = (b"ros2:", b"ros2_caret:")
+_HANDLE = re.compile(rb" \w+ = 0x([0-9A-F]+)")
+_BUFFER = 1 << 20  # bytes; the usual 8 KiB cost more wake-ups than work
+_PREFIXES = ("ros2:", "ros2_caret:")
 
 
 class ThreadId(NamedTuple):
@@ -31,17 +33,13 @@ class ThreadId(NamedTuple):
 
 
 class Event(NamedTuple):
-    """An event of ros2_tracing or CARET; its fields are parsed when needed."""
+    """An event of ros2_tracing or CARET."""
 
     time_ns: int
     name: str
     thread: ThreadId
+    handle: int  # in the first field; 0 if that is no address
     payload: bytes
-
-    @property
-    def handle(self) -> int:
-        """The address in the first field."""
-        return int(self.payload.split(b",", 1)[0].split()[2], 16)
 
     def fields(self) -> dict[str, int | str]:
         """Return all fields."""
@@ -64,7 +62,9 @@ class Reader:
         command = [_program(), "--color=never", "--clock-seconds", "--no-delta", str(self.path)]
         with (
             tempfile.TemporaryFile() as log,
-            subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log) as program,
+            subprocess.Popen(
+                command, bufsize=_BUFFER, stdout=subprocess.PIPE, stderr=log
+            ) as program,
         ):
             try:
                 assert program.stdout is not None
@@ -77,22 +77,27 @@ class Reader:
             self._check(status, log.read())
 
     def _parsed(self, lines: IO[bytes]) -> Iterator[Event]:
+        """Parse lines such as `[1.5] host ros2:x: { cpu_id = 1 }, { vpid = 2 }, { y = 0x3 }`."""
         threads: dict[bytes, ThreadId] = {}
         names: dict[bytes, str] = {}
         for line in lines:
             parts = line.split(b"}, {", 2)
-            stamp, _, head = parts[0].partition(b" ")
-            full_name = head.partition(b": {")[0].rpartition(b" ")[2]
-            if not full_name.startswith(_PREFIXES):
+            head = parts[0].split(b": {", 1)[0]
+            own_name = head[head.rfind(b" ") + 1 :]
+            name = names.get(own_name)
+            if name is None:
+                name = names[own_name] = own_name.decode()
+            if not name.startswith(_PREFIXES):
                 continue
             if len(parts) != 3:
-                raise self._problem(f"event {full_name.decode()}", "its context and fields")
-            thread = threads.get(parts[1])
+                raise self._problem(f"event {name}", "its context and fields")
+            _, context, payload = parts
+            thread = threads.get(context)
             if thread is None:
-                thread = threads[parts[1]] = self._thread(parts[1])
-            name = names.setdefault(full_name, full_name.decode())
-            time_ns = int(stamp[1:-1].replace(b".", b""))
-            yield Event(time_ns, name, thread, parts[2])
+                thread = threads[context] = self._thread(context)
+            time_ns = int(head[1 : head.index(b"]")].replace(b".", b""))
+            found = _HANDLE.match(payload)
+            yield Event(time_ns, name, thread, int(found[1], 16) if found else 0, payload)
 
     def _thread(self, context: bytes) -> ThreadId:
         fields = fields_in(context)

@@ -59,7 +59,7 @@ def load(path: Path) -> Profile:
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(map(str, first["loc"]))
-        raise _problem(path, key, "a profile of manycore profile", first["msg"]) from error
+        raise _problem(path, key, "the profile of an application", first["msg"]) from error
 
 
 def _problem(path: Path, key: str, expected: str, found: str) -> FileError:

@@ -13,7 +13,7 @@ VERSION = 1
 Index = NonNegativeInt
 Count = NonNegativeInt
 Source = Literal["ros2_tracing", "caret_report", "manycore_trace"]
-CallbackKind = Literal["subscription", "timer", "service", "unknown"]
+CallbackKind = Literal["subscription", "timer", "service", "client", "unknown"]
 
 
 class _Row(BaseModel):

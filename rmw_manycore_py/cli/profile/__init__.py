@@ -10,6 +10,7 @@ from rmw_manycore_py.cli.common.options import examples
 
 VERBS = {
     "import": "rmw_manycore_py.cli.profile.import_:command",
+    "record": "rmw_manycore_py.cli.profile.record:command",
     "show": "rmw_manycore_py.cli.profile.show:command",
 }
 
@@ -19,6 +20,7 @@ VERBS = {
     cls=LazyGroup,
     commands_at=VERBS,
     epilog=examples(
+        "manycore profile record talker_listener --duration 30",
         "manycore profile import trace_directory -o app.profile.json",
         "manycore profile show app.profile.json",
     ),

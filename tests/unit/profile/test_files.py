@@ -74,9 +74,9 @@ def test_load_counts_cpu_time_before_wall_time(profile: Profile) -> None:
     [
         ({"version": 2}, "version: expected 1, found 2 of manycore profile"),
         ({"format": "other"}, "version: expected 1, found 1 of other"),
-        ({"events": -1}, "events: expected a profile of manycore profile, found .*greater"),
-        ({"extra": 1}, "extra: expected a profile of manycore profile, found Extra"),
-        ({"nodes": [{"name": 3}]}, "nodes.0.name: expected a profile"),
+        ({"events": -1}, "events: expected the profile of an application, found .*greater"),
+        ({"extra": 1}, "extra: expected the profile of an application, found Extra"),
+        ({"nodes": [{"name": 3}]}, "nodes.0.name: expected the profile"),
     ],
 )
 def test_a_file_of_another_kind_is_refused(
@@ -93,7 +93,7 @@ def test_a_damaged_or_missing_file_is_refused(profile: Profile, tmp_path: Path) 
     with pytest.raises(ManycoreError, match="cannot be read: No such file"):
         load(path)
     path.write_text(to_text(profile)[:-20])
-    with pytest.raises(FileError, match="expected a profile of manycore profile, found Invalid"):
+    with pytest.raises(FileError, match="expected the profile of an application, found Invalid"):
         load(path)
     with pytest.raises(ManycoreError, match="cannot be written"):
         save(profile, tmp_path / "missing" / "app.profile.json")

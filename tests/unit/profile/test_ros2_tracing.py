@@ -3,14 +3,27 @@
 
 from __future__ import annotations
 
-import json
 import os
-import subprocess
 from itertools import count
-from pathlib import Path
 
 import pytest
-from made_ctf import Made, made, write_trace
+from made_ctf import (
+    FROM_TIMER,
+    FROM_TOPIC,
+    MS,
+    NODE,
+    SUBSCRIPTION,
+    SYMBOL,
+    Made,
+    begin,
+    end,
+    made,
+    node,
+    published,
+    subscription,
+    timer,
+    write_trace,
+)
 
 from rmw_manycore_py.errors import FileError, ManycoreError
 from rmw_manycore_py.profile.model import Callback, Profile
@@ -18,55 +31,6 @@ from rmw_manycore_py.profile.ros2_tracing import Window, import_trace
 from rmw_manycore_py.profile.summary import summary_of
 
 pytestmark = [pytest.mark.unit, pytest.mark.needs("babeltrace2")]
-
-MS = 1_000_000
-NODE, PUBLISHER, SUBSCRIPTION, TIMER = 0x10, 0x20, 0x30, 0x40
-FROM_TOPIC, FROM_TIMER = 0x50, 0x60  # callbacks
-SYMBOL = 'f<{lambda()#1}, {lambda()#2}>::operator()("a")'
-
-
-def node(pid: int, name: str, at: int = NODE, topic: str = "/out") -> list[Made]:
-    """Return the init events of a node with a publisher, at time 0."""
-    return [
-        made(0, "rcl_publisher_init", pid, pid, publisher_handle=at + 1, node_handle=at,
-             topic_name="/rosout", queue_depth=1000),
-        made(0, "rcl_node_init", pid, pid, node_handle=at, node_name=name, namespace="/ns"),
-        made(0, "rcl_publisher_init", pid, pid, publisher_handle=PUBLISHER + at, node_handle=at,
-             topic_name=topic, queue_depth=3),
-    ]  # fmt: skip
-
-
-def subscription(pid: int, topic: str, callback: int = FROM_TOPIC, at_ns: int = 0) -> list[Made]:
-    """Return the init events of a subscription, in the order of rclcpp with intra-process."""
-    return [
-        made(at_ns, "rcl_subscription_init", pid, pid, subscription_handle=SUBSCRIPTION,
-             node_handle=NODE, topic_name=topic, queue_depth=7),
-        made(at_ns, "rclcpp_subscription_callback_added", pid, pid, subscription=SUBSCRIPTION + 1,
-             callback=callback),
-        made(at_ns, "rclcpp_callback_register", pid, pid, callback=callback, symbol=SYMBOL),
-        made(at_ns, "rclcpp_subscription_init", pid, pid, subscription_handle=SUBSCRIPTION,
-             subscription=SUBSCRIPTION + 1),
-    ]  # fmt: skip
-
-
-def timer(pid: int) -> list[Made]:
-    return [
-        made(0, "rcl_timer_init", pid, pid, timer_handle=TIMER, period=20 * MS),
-        made(0, "rclcpp_timer_callback_added", pid, pid, timer_handle=TIMER, callback=FROM_TIMER),
-        made(0, "rclcpp_timer_link_node", pid, pid, timer_handle=TIMER, node_handle=NODE),
-    ]
-
-
-def begin(ms: float, pid: int, tid: int, callback: int) -> Made:
-    return made(round(ms * MS), "callback_start", pid, tid, callback=callback)
-
-
-def end(ms: float, pid: int, tid: int, callback: int) -> Made:
-    return made(round(ms * MS), "callback_end", pid, tid, callback=callback)
-
-
-def published(ms: float, pid: int, tid: int, at: int = NODE) -> Made:
-    return made(round(ms * MS), "rcl_publish", pid, tid, publisher_handle=PUBLISHER + at)
 
 
 @pytest.fixture
@@ -279,107 +243,3 @@ def test_the_missing_reader_is_named(tmp_path, monkeypatch) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(ManycoreError, match=r"apt-get install babeltrace2"):
         import_trace(trace, Window())
-
-
-# Counts by thread what awk reads in babeltrace2's text, with nothing of this project.
-AWK = r"""
-function value(key) { match($0, key " = [^,} ]+"); return substr($0, RSTART + length(key) + 3, \
-                      RLENGTH - length(key) - 3) }
-{ for (i = 1; i <= NF; i++) if ($i ~ /^ros2:/) { n[$i]++; break } }
-/ros2:rclcpp_[a-z]*_callback_added:/ { generation[value("vpid") "/" value(" callback")]++ }
-/ros2:callback_(start|end):/ {
-  split(substr($1, 2), t, "."); thread = value("vpid") "/" value("vtid")
-  at = value("vpid") "/" value(" callback")
-  now = (t[1] % 1000000) + (substr(t[2], 1, 9) / 1e9)
-  if (/callback_start/) {
-    if (depth[thread] > 0) around[thread, depth[thread]] = 1
-    d = ++depth[thread]; open[thread, d] = at; since[thread, d] = now; around[thread, d] = 0
-  } else if ((d = depth[thread]) > 0 && open[thread, d] == at) {
-    if (around[thread, d]) enclosing++
-    else { runs++; busy += now - since[thread, d]; kinds[at "/" generation[at]] = 1 }
-    depth[thread]--
-  } else stray++
-}
-{ split(substr($1, 2), t, "."); last = (t[1] % 1000000) + (substr(t[2], 1, 9) / 1e9)
-  if (NR == 1) first = last }
-END {
-  for (kind in kinds) k++
-  for (thread in depth) unfinished += depth[thread]
-  printf "{\"executions\": %d, \"callbacks\": %d, \"enclosing\": %d, \"unfinished\": %d, ", \
-    runs, k, enclosing, unfinished
-  printf "\"begun_before\": %d, \"nodes\": %d, \"publishers\": %d, \"subscriptions\": %d, ", \
-    stray, n["ros2:rcl_node_init:"], n["ros2:rcl_publisher_init:"], \
-    n["ros2:rcl_subscription_init:"]
-  printf "\"publications\": %d, \"begins\": %d, \"ends\": %d, \"duration_s\": %.6f, ", \
-    n["ros2:rcl_publish:"], n["ros2:callback_start:"], n["ros2:callback_end:"], last - first
-  printf "\"cpus_busy\": %.6f}\n", busy / (last - first)
-}
-"""
-
-
-def counted_by_awk(trace: Path) -> dict[str, float]:
-    text = subprocess.Popen(
-        ["babeltrace2", "--clock-seconds", "--no-delta", str(trace)], stdout=subprocess.PIPE
-    )
-    with text:
-        found = subprocess.run(["awk", AWK], stdin=text.stdout, check=True, stdout=subprocess.PIPE)
-    assert text.returncode == 0
-    counts = json.loads(found.stdout)
-    assert isinstance(counts, dict)
-    return counts
-
-
-def check_counts(trace: Path) -> dict[str, float]:
-    """Compare the profile with the independent counts; return its summary."""
-    summary = summary_of(import_trace(trace, Window()))
-    counts = counted_by_awk(trace)
-    accounted = summary["executions"] + summary["enclosing"]
-    assert accounted + summary["unfinished"] == counts.pop("begins")
-    assert accounted + summary["begun_before"] == counts.pop("ends")
-    for key, value in counts.items():
-        assert summary[key] == pytest.approx(value, abs=2e-5), key
-    return summary
-
-
-def test_the_counts_are_those_of_awk(tmp_path) -> None:
-    events = [*node(1, "a"), *subscription(1, "/in"), *timer(1), *node(2, "b"), *timer(2)]
-    for at_ms in range(10, 400, 7):
-        pid = 1 + at_ms % 2
-        events += [begin(at_ms, pid, pid, FROM_TIMER), published(at_ms + 1, pid, pid)]
-        events += [end(at_ms + 3, pid, pid, FROM_TIMER)]
-    events += [end(410, 1, 1, FROM_TOPIC), begin(411, 1, 1, FROM_TIMER)]
-    events += [begin(412, 1, 1, FROM_TOPIC), end(413, 1, 1, FROM_TOPIC), end(414, 1, 1, FROM_TIMER)]
-    events += [*subscription(1, "/in", at_ns=415 * MS), begin(416, 1, 1, FROM_TOPIC)]
-    events += [end(417, 1, 1, FROM_TOPIC), begin(418, 2, 2, FROM_TIMER)]
-    summary = check_counts(write_trace(tmp_path / "trace", events))
-    assert (summary["callbacks"], summary["enclosing"], summary["unfinished"]) == (4, 1, 1)
-
-
-# The data set's directory; see the test for what it holds.
-AUTOWARE = os.environ.get("MANYCORE_TEST_AUTOWARE")
-EXPECTED = {
-    "aw_replay": {
-        "nodes": 226, "subscriptions": 787, "publishers": 736, "callbacks": 786,
-        "executions": 903_206, "enclosing": 1, "publications": 52_133,
-    },
-    "aw_carla": {
-        "nodes": 195, "subscriptions": 704, "publishers": 570, "callbacks": 341,
-        "executions": 302_859, "enclosing": 1, "publications": 27_908,
-    },
-    "aw_scenario": {
-        "nodes": 160, "subscriptions": 470, "publishers": 579, "callbacks": 431,
-        "executions": 799_061, "enclosing": 1, "publications": 189_246,
-    },
-}  # fmt: skip
-
-
-@pytest.mark.long
-@pytest.mark.skipif(not AUTOWARE, reason="MANYCORE_TEST_AUTOWARE names no directory of traces")
-@pytest.mark.parametrize("name", EXPECTED)
-def test_the_counts_of_autoware_are_those_of_awk(name: str, tmp_path) -> None:
-    """Of aw_*.tar.xz: traces of github.com/TUM-AVS/ros2_latency_analysis, commit 3751b4f."""
-    assert AUTOWARE is not None
-    archive = Path(AUTOWARE) / f"{name}.tar.xz"
-    subprocess.run(["tar", "xf", archive, "-C", tmp_path], check=True)
-    summary = check_counts(tmp_path)
-    assert {key: summary[key] for key in EXPECTED[name]} == EXPECTED[name]
