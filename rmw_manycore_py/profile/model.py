@@ -110,6 +110,13 @@ class Callback(_Row):
         time_ns = self.cpu_ns or self.wall_ns
         return (self.rate_hz or 0.0) * time_ns.mean / 1e9 if time_ns else 0.0
 
+    @property
+    def cpu_share(self) -> float | None:
+        """Share of its wall time that the callback spends on a CPU, if known."""
+        if self.cpu_ns is None or not self.wall_ns or not self.wall_ns.mean:
+            return None
+        return self.cpu_ns.mean / self.wall_ns.mean
+
 
 class Hop(_Row):
     """A node of a chain, between the topics of its subscription and its publisher."""

@@ -57,12 +57,12 @@ def _show_summary(summary: dict[str, Any]) -> None:
 
 
 def _show_callbacks(profile: Profile, callbacks: list[Callback]) -> None:
-    table = new_table("node", "callback", "#rate Hz", "#mean", "#p99", "#max", "#CPUs")
+    table = new_table("node", "callback", "#rate Hz", "#mean", "#p99", "#max", "#on CPU", "#CPUs")
     for one in callbacks:
         node = "" if one.node is None else profile.nodes[one.node].name
         times = [_ms(profile, one.wall_ns, share) for share in (None, 0.99, 1.0)]
         rate = "" if one.rate_hz is None else f"{one.rate_hz:.1f}"
-        table.add_row(node, _trigger(one), rate, *times, f"{one.load_cpus:.3f}")
+        table.add_row(node, _trigger(one), rate, *times, _on_cpu(one), f"{one.load_cpus:.3f}")
     print_table(table)
 
 
@@ -70,6 +70,11 @@ def _trigger(one: Callback) -> str:
     if one.kind == "timer" and one.period_ns is not None:
         return f"timer {one.period_ns / 1e6:g} ms"
     return f"{one.kind} {one.trigger}".rstrip()
+
+
+def _on_cpu(one: Callback) -> str:
+    share = one.cpu_share
+    return "" if share is None else f"{share:.0%}"
 
 
 def _ms(profile: Profile, times_ns: Distribution | None, share: float | None) -> str:

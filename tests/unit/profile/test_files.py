@@ -66,6 +66,7 @@ def test_load_counts_cpu_time_before_wall_time(profile: Profile) -> None:
     assert callback.load_cpus == pytest.approx(8e-9)
     measured = callback.model_copy(update={"cpu_ns": distribution_of(array("q", [1]))})
     assert measured.load_cpus == pytest.approx(2e-9)
+    assert (callback.cpu_share, measured.cpu_share) == (None, 0.25)
     assert summary_of(profile)["cpus_busy"] == pytest.approx(8e-9)
 
 
