@@ -296,6 +296,18 @@ TEST_CASE("loans are filled while their publisher goes on; what is not published
   CHECK(chunks_of(f, *publisher) <= 5);
 }
 
+TEST_CASE("a topic DSM of a fixed size has no chunks: it lends nothing, and nothing is held") {
+  const TestPlatform platform;
+  const Configurator configurator(
+    platform.name(), profile_of(32 * mebibyte), {{"/driver", 1, 2 * mebibyte, 0}});
+  const auto process = platform.join();
+  const auto publisher = process->create_publisher(on_topic("/driver", keep_last(1)));
+  const auto subscription = process->create_subscription(on_topic("/driver", keep_last(1)));
+  CHECK_FALSE(publisher->lend(large));
+  publish(*publisher, 1, large);
+  CHECK_FALSE(hold_next(*subscription));
+}
+
 TEST_CASE("of a process that is killed while it takes holds, all memory is free again") {
   Fixture f;
   const uint64_t used = f.inspection.used_bytes();
