@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
+import shutil
 import signal
-import sys
 import tempfile
 from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
@@ -13,25 +14,15 @@ from typing import Any
 
 import pytest
 
-# Test files import `support` by name, from whatever directory pytest is started in.
-sys.path.insert(0, str(Path(__file__).parent))
-
-from fast_dds import remove_unfinished_ports
-from fork_server import ForkServer, is_inside
-from isolation import Isolation
-from peers import PeerServers
-from processes import has_receive_threads
-from scheduling import begin_with_longest, make_scheduler
-from support import (
-    IS_MANYCORE,
-    TESTS,
-    Program,
-    environment,
-    is_installed,
-    leftovers,
-    unique_platform,
-    wait_until,
-)
+from support import IS_MANYCORE, TESTS, wait_until
+from support.peers.client import PeerServers
+from support.processes.fast_dds import remove_unfinished_ports
+from support.processes.inspection import has_receive_threads
+from support.processes.platforms import environment, leftovers, unique_platform
+from support.processes.program import Program
+from support.session.fork_server import ForkServer, is_inside
+from support.session.isolation import Isolation
+from support.session.scheduling import begin_with_longest, make_scheduler
 
 PEER_SERVERS = pytest.StashKey[PeerServers]()
 PROGRAMS = pytest.StashKey[list[Program]]()
@@ -61,8 +52,13 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
     needed = {name for mark in item.iter_markers("needs") for name in mark.args}
-    if missing := [name for name in sorted(needed) if not is_installed(name)]:
+    if missing := [name for name in sorted(needed) if not _is_installed(name)]:
         pytest.fail(f"missing: {', '.join(missing)}; run scripts/setup.sh tests", pytrace=False)
+
+
+def _is_installed(name: str) -> bool:
+    """Return whether a program or a Python module of this name is installed."""
+    return shutil.which(name) is not None or importlib.util.find_spec(name) is not None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

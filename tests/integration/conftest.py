@@ -7,9 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from bridging import Bridge
-from forked import forked_example, forked_manycore
-from installing import Installation, pack_wheel
+
+from support.installs.installing import Installation, pack_wheel
+from support.nodes.bridging import Bridge
+from support.peers.programs import forked_example, forked_manycore
 
 
 @pytest.fixture(scope="session")

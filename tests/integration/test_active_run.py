@@ -9,11 +9,14 @@ import threading
 from pathlib import Path
 
 import pytest
-from processes import kill
-from ros_support import announce
-from support import TIMEOUT_S, Program, environment, peer_command, wait_until
 
 import rmw_manycore_py as manycore
+from support import TIMEOUT_S, wait_until
+from support.nodes.ros import announce
+from support.processes.commands import peer_command
+from support.processes.inspection import kill
+from support.processes.platforms import environment
+from support.processes.program import Program
 
 pytestmark = pytest.mark.integration
 

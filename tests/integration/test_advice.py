@@ -16,14 +16,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from advice import quoted, run_quoted
-from forked import forked_example, forked_manycore
-from own_shm import can_mount
-from processes import kill_all
-from support import IS_MANYCORE, Program, manycore_command, wait_until
 
 from rmw_manycore_py.launch.runs.directory import runs_of
 from rmw_manycore_py.mapfile.installed import installed_mapfiles
+from support import IS_MANYCORE, wait_until
+from support.peers.programs import forked_example, forked_manycore
+from support.processes.commands import manycore_command
+from support.processes.inspection import kill_all
+from support.processes.own_shm import can_mount
+from support.processes.program import Program
+from support.sources.advice import quoted, run_quoted
 
 pytestmark = [
     pytest.mark.integration,

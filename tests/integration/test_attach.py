@@ -9,10 +9,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from person import Person
-from support import IS_MANYCORE, environment, manycore_command, wait_until
 
 from rmw_manycore_py.native import _transport
+from support import IS_MANYCORE, wait_until
+from support.processes.commands import manycore_command
+from support.processes.person import Person
+from support.processes.platforms import environment
 
 pytestmark = [
     pytest.mark.integration,

@@ -14,9 +14,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support import PLATFORMS, TIMEOUT_S, entries, manycore_command, wait_until
 
 from rmw_manycore_py.bench.hosts import can_have_hosts
+from support import TIMEOUT_S, wait_until
+from support.processes.commands import manycore_command
+from support.processes.platforms import PLATFORMS, entries
 
 pytestmark = pytest.mark.integration
 

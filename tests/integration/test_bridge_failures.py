@@ -12,26 +12,18 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
-from bridging import OUTSIDE, Bridge
-from domains import domain_of
-from processes import has_receive_threads
-from support import (
-    IS_MANYCORE,
-    MAPFILES,
-    TIMEOUT_S,
-    environment,
-    example_command,
-    leftovers,
-    manycore_command,
-    unique_platform,
-    wait_until,
-)
 
 from rmw_manycore_bridge.status import status
 from rmw_manycore_bridge.time_slice import SLICE_NS, time_slice_ns
 from rmw_manycore_py.platform.topology import HostCpu, as_host_cpu
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import arranged
+from support import IS_MANYCORE, MAPFILES, TIMEOUT_S, wait_until
+from support.nodes.bridging import OUTSIDE, Bridge
+from support.processes.commands import example_command, manycore_command
+from support.processes.domains import domain_of
+from support.processes.inspection import has_receive_threads
+from support.processes.platforms import environment, leftovers, unique_platform
 
 pytestmark = [
     pytest.mark.integration,

@@ -7,8 +7,9 @@ import threading
 from collections.abc import Callable
 
 import pytest
-from ros_support import announce
+
 from support import IS_MANYCORE, TIMEOUT_S
+from support.nodes.ros import announce
 
 pytestmark = [
     pytest.mark.integration,

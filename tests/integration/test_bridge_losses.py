@@ -13,11 +13,13 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, REPOSITORY, environment, manycore_command, wait_until
 
 from rmw_manycore_bridge.datagrams import receive_buffer_errors, socket_drops
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import arranged
+from support import IS_MANYCORE, REPOSITORY, wait_until
+from support.processes.commands import manycore_command
+from support.processes.platforms import environment
 
 pytestmark = [
     pytest.mark.integration,

@@ -13,18 +13,12 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from bridging import OUTSIDE
-from ros_support import announce, peer_node, spin_until, type_of
-from support import (
-    IS_MANYCORE,
-    MAPFILES,
-    example_command,
-    manycore_command,
-    peer_command,
-    wait_until,
-)
 
 from rmw_manycore_py.bench.hosts import NETWORK, Host, can_have_hosts, two_hosts
+from support import IS_MANYCORE, MAPFILES, wait_until
+from support.nodes.bridging import OUTSIDE
+from support.nodes.ros import announce, peer_node, spin_until, type_of
+from support.processes.commands import example_command, manycore_command, peer_command
 
 pytestmark = [
     pytest.mark.integration,

@@ -10,13 +10,13 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from ros_support import announce, peer_node, spin_until, type_of
-from speakers import qos
-from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
 from rmw_manycore_bridge.counters import CounterFile, status_path
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.routes.route import DIRECTIONS
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
+from support.nodes.ros import announce, peer_node, spin_until, type_of
+from support.nodes.speakers import qos
 
 pytestmark = [
     pytest.mark.integration,

@@ -7,15 +7,16 @@ import os
 import signal
 
 import pytest
-from bridging import OUTSIDE, STRING, Bridge
-from domains import domain_of
-from ros_support import announce, peer_node, spin_until, type_of
-from speakers import hear, say
-from support import IS_MANYCORE, example_command, manycore_command, wait_until
 
 from rmw_manycore_bridge.status import status
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.routes.route import DIRECTIONS, Direction
+from support import IS_MANYCORE, wait_until
+from support.nodes.bridging import OUTSIDE, STRING, Bridge
+from support.nodes.ros import announce, peer_node, spin_until, type_of
+from support.nodes.speakers import hear, say
+from support.processes.commands import example_command, manycore_command
+from support.processes.domains import domain_of
 
 pytestmark = [
     pytest.mark.integration,

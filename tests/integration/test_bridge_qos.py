@@ -9,9 +9,10 @@ from itertools import count
 from typing import Any
 
 import pytest
-from bridging import STRING, Bridge
-from ros_support import announce, peer_node, spin_until, type_of
+
 from support import IS_MANYCORE, wait_until
+from support.nodes.bridging import STRING, Bridge
+from support.nodes.ros import announce, peer_node, spin_until, type_of
 
 pytestmark = [
     pytest.mark.integration,

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from bridging import Bridge
-from ros_support import announce, peer_node, spin_until, type_of
-from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
 from rmw_manycore_py.native import _transport
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
+from support.nodes.bridging import Bridge
+from support.nodes.ros import announce, peer_node, spin_until, type_of
 
 pytestmark = [
     pytest.mark.integration,

@@ -10,11 +10,11 @@ import time
 from typing import Any
 
 import pytest
-from bridging import Bridge
-from ros_support import announce, peer_node, spin_until, type_of
-from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
 from rmw_manycore_py.routes.route import action_routes, parameter_routes
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
+from support.nodes.bridging import Bridge
+from support.nodes.ros import announce, peer_node, spin_until, type_of
 
 pytestmark = [
     pytest.mark.integration,

@@ -15,13 +15,13 @@ import signal
 import sys
 
 import pytest
-from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import UInt8MultiArray
-from support import IS_MANYCORE
 
 from rmw_manycore_bridge.transports import NOTICE, PROFILES, TRANSPORTS, avoid_shared_memory
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import arranged
+from support import IS_MANYCORE
+from support.nodes.ros import announce, peer_node, spin_until
 
 pytestmark = [
     pytest.mark.integration,

@@ -8,18 +8,13 @@ import signal
 import time
 
 import pytest
-from bridging import OUTSIDE
-from ros_support import announce, peer_node, spin_until, type_of
-from speakers import hear, qos, say
-from support import (
-    IS_MANYCORE,
-    MAPFILES,
-    TIMEOUT_S,
-    example_command,
-    leftovers,
-    manycore_command,
-    wait_until,
-)
+
+from support import IS_MANYCORE, MAPFILES, TIMEOUT_S, wait_until
+from support.nodes.bridging import OUTSIDE
+from support.nodes.ros import announce, peer_node, spin_until, type_of
+from support.nodes.speakers import hear, qos, say
+from support.processes.commands import example_command, manycore_command
+from support.processes.platforms import leftovers
 
 pytestmark = [
     pytest.mark.integration,

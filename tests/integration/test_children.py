@@ -11,10 +11,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, TESTS, TIMEOUT_S, environment, manycore_command
 
 import rmw_manycore_hook as hook
 from rmw_manycore_hook import library_path
+from support import IS_MANYCORE, TESTS, TIMEOUT_S
+from support.processes.commands import manycore_command
+from support.processes.platforms import environment
 
 if not IS_MANYCORE:
     pytest.skip("is about rmw_manycore in the place of Fast DDS", allow_module_level=True)

@@ -7,15 +7,11 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from advice import quoted, run_quoted
-from support import (
-    IS_MANYCORE,
-    MAPFILES,
-    environment,
-    example_command,
-    manycore_command,
-    wait_until,
-)
+
+from support import IS_MANYCORE, MAPFILES, wait_until
+from support.processes.commands import example_command, manycore_command
+from support.processes.platforms import environment
+from support.sources.advice import quoted, run_quoted
 
 pytestmark = [
     pytest.mark.integration,

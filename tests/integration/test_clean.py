@@ -11,9 +11,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from forked import forked_example, forked_manycore
-from processes import kill, kill_all, processes_of, stop_all
-from support import IS_MANYCORE, PLATFORMS, Program, wait_until
+
+from support import IS_MANYCORE, wait_until
+from support.peers.programs import forked_example, forked_manycore
+from support.processes.inspection import kill, kill_all, processes_of, stop_all
+from support.processes.platforms import PLATFORMS
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,

@@ -8,8 +8,11 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
-from ros_support import announce, peer_node
-from support import IS_MANYCORE, environment, manycore_command, peer_command
+
+from support import IS_MANYCORE
+from support.nodes.ros import announce, peer_node
+from support.processes.commands import manycore_command, peer_command
+from support.processes.platforms import environment
 
 pytestmark = [
     pytest.mark.integration,

@@ -17,13 +17,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from advice import run_quoted
-from processes import is_asleep
-from support import IS_MANYCORE, TIMEOUT_S, Program, manycore_command, wait_until
 
 from rmw_manycore_py.launch.control import MAX_CLIENTS, STOP_PLACES
 from rmw_manycore_py.launch.runs.directory import RunDirectory, runs_of
 from rmw_manycore_py.launch.runs.lines import MAX_LINE_BYTES
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
+from support.processes.commands import manycore_command
+from support.processes.inspection import is_asleep
+from support.processes.program import Program
+from support.sources.advice import run_quoted
 
 pytestmark = [
     pytest.mark.integration,

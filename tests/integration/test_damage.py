@@ -10,9 +10,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from forked import forked_example
-from processes import kill_all, stop_all
-from support import IS_MANYCORE, PLATFORMS, Program
+
+from support import IS_MANYCORE
+from support.peers.programs import forked_example
+from support.processes.inspection import kill_all, stop_all
+from support.processes.platforms import PLATFORMS
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,

@@ -6,17 +6,14 @@ from __future__ import annotations
 import json
 
 import pytest
-from forked import forked_manycore
-from ros_support import announce, peer_node, spin
 from std_msgs.msg import String
-from support import (
-    IS_MANYCORE,
-    PLATFORMS,
-    Program,
-    example_command,
-    manycore_command,
-    peer_command,
-)
+
+from support import IS_MANYCORE
+from support.nodes.ros import announce, peer_node, spin
+from support.peers.programs import forked_manycore
+from support.processes.commands import example_command, manycore_command, peer_command
+from support.processes.platforms import PLATFORMS
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,

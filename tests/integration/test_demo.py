@@ -7,7 +7,9 @@ import signal
 from pathlib import Path
 
 import pytest
-from support import MAPFILES, manycore_command
+
+from support import MAPFILES
+from support.processes.commands import manycore_command
 
 pytestmark = pytest.mark.integration
 

@@ -11,15 +11,18 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from doc_commands import ROOT, script
-from support import IS_MANYCORE, TIMEOUT_S, environment, manycore_command
+
+from support import IS_MANYCORE, REPOSITORY, TIMEOUT_S
+from support.processes.commands import manycore_command
+from support.processes.platforms import environment
+from support.sources.doc_commands import script
 
 pytestmark = [
     pytest.mark.integration,
     pytest.mark.skipif(not IS_MANYCORE, reason="they are about rmw_manycore"),
 ]
 
-DOCS = ROOT / "docs"
+DOCS = REPOSITORY / "docs"
 STRICT = "set -euo pipefail\n"
 # On a busy machine the nodes of a page may need longer to start than its runs take.
 DURATION = "--duration 30"

@@ -13,7 +13,10 @@ from pathlib import Path
 
 import pytest
 import yaml
-from support import IS_MANYCORE, MAPFILES, PLATFORMS, example_command, manycore_command
+
+from support import IS_MANYCORE, MAPFILES
+from support.processes.commands import example_command, manycore_command
+from support.processes.platforms import PLATFORMS
 
 pytestmark = [
     pytest.mark.integration,

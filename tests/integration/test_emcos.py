@@ -10,12 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from processes import is_asleep, is_stopped
-from ros_support import announce
-from support import TIMEOUT_S, peer_command, wait_until
 
 from rmw_manycore_py import emcos
 from rmw_manycore_py.transport import TransportError, TransportTimeoutError
+from support import TIMEOUT_S, wait_until
+from support.nodes.ros import announce
+from support.processes.commands import peer_command
+from support.processes.inspection import is_asleep, is_stopped
 
 pytestmark = pytest.mark.integration
 

@@ -16,17 +16,18 @@ from types import FrameType
 from typing import Any
 
 import pytest
-from advice import run_quoted
-from emcos_ends import OPEN, OTHER, SIZE, WAITS, run, use
-from processes import is_asleep, is_stopped
-from ros_support import announce
-from support import manycore_command, peer_command, wait_until
 
 from rmw_manycore_py import emcos
 from rmw_manycore_py.emcos.memory import create_memory
 from rmw_manycore_py.emcos.rendezvous import _address
 from rmw_manycore_py.process.parent_death import dies_with_this_process
 from rmw_manycore_py.transport import TransportError, TransportTimeoutError
+from support import wait_until
+from support.nodes.emcos_ends import OPEN, OTHER, SIZE, WAITS, run, use
+from support.nodes.ros import announce
+from support.processes.commands import manycore_command, peer_command
+from support.processes.inspection import is_asleep, is_stopped
+from support.sources.advice import run_quoted
 
 pytestmark = pytest.mark.integration
 

@@ -13,16 +13,11 @@ from typing import Any
 import pytest
 import yaml
 from builtin_interfaces.msg import Time
-from ros_support import announce, peer_node, spin_until
-from support import (
-    IS_MANYCORE,
-    MAPFILES,
-    TIMEOUT_S,
-    Program,
-    manycore_command,
-    peer_command,
-    wait_until,
-)
+
+from support import IS_MANYCORE, MAPFILES, TIMEOUT_S, wait_until
+from support.nodes.ros import announce, peer_node, spin_until
+from support.processes.commands import manycore_command, peer_command
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,

@@ -8,11 +8,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, leftovers
 
 from rmw_manycore_py.errors import ManycoreError, MapfileError
 from rmw_manycore_py.extensions.foreign_launch import ForeignLaunch
 from rmw_manycore_py.native import _transport
+from support import IS_MANYCORE
+from support.processes.platforms import leftovers
 
 pytestmark = [
     pytest.mark.integration,

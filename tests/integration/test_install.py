@@ -16,8 +16,10 @@ from pathlib import Path
 from zipfile import ZipFile
 
 import pytest
-from installing import Installation, build_wheel, run
-from support import MAPFILES, REPOSITORY, environment, unique_platform
+
+from support import MAPFILES, REPOSITORY
+from support.installs.installing import Installation, build_wheel, run
+from support.processes.platforms import environment, unique_platform
 
 pytestmark = [pytest.mark.integration, pytest.mark.long]
 

@@ -11,8 +11,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from installing import Installation, run
-from support import REPOSITORY, Program, environment, wait_until
+
+from support import REPOSITORY, wait_until
+from support.installs.installing import Installation, run
+from support.processes.platforms import environment
+from support.processes.program import Program
 
 pytestmark = [pytest.mark.integration, pytest.mark.long]
 

@@ -10,12 +10,20 @@ import sys
 from pathlib import Path
 
 import pytest
-from bridging import OUTSIDE
-from building import DEFINITIONS, HEARD, THINGS, interface, node_command, write_definitions
-from support import IS_MANYCORE, manycore_command
 
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import arranged
+from support import IS_MANYCORE
+from support.installs.building import (
+    DEFINITIONS,
+    HEARD,
+    THINGS,
+    interface,
+    node_command,
+    write_definitions,
+)
+from support.nodes.bridging import OUTSIDE
+from support.processes.commands import manycore_command
 
 pytestmark = [
     pytest.mark.integration,

@@ -11,11 +11,13 @@ import sys
 from pathlib import Path
 
 import pytest
-from advice import quoted, run_quoted
-from building import TINY, interface, write_definitions
-from installing import READ_ONLY
-from own_shm import can_mount
-from support import IS_MANYCORE, manycore_command, wait_until
+
+from support import IS_MANYCORE, wait_until
+from support.installs.building import TINY, interface, write_definitions
+from support.installs.installing import READ_ONLY
+from support.processes.commands import manycore_command
+from support.processes.own_shm import can_mount
+from support.sources.advice import quoted, run_quoted
 
 pytestmark = [
     pytest.mark.integration,

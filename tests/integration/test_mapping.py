@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support import IS_MANYCORE, manycore_command, wait_until
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapfile import check
 from rmw_manycore_py.platform.status import status
+from support import IS_MANYCORE, wait_until
+from support.processes.commands import manycore_command
 
 pytestmark = [
     pytest.mark.integration,

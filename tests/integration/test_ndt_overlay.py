@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support import IS_MANYCORE, manycore_command
 
 from rmw_manycore_py.ndt.maps.map_file import write_points
+from support import IS_MANYCORE
+from support.processes.commands import manycore_command
 
 pytestmark = [
     pytest.mark.integration,

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ndt_world import errors, pose, scan_at, street
 
 from rmw_manycore_py.native.enums import Search, VoxelCovariance
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry.thinning import spread_indices
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import OwnParameters
 from rmw_manycore_py.ndt.recordings.recording import load_recording
+from support.samples.ndt_world import errors, pose, scan_at, street
 
 pytestmark = pytest.mark.integration
 

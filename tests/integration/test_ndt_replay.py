@@ -21,21 +21,15 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from advice import quoted
-from support import (
-    IS_MANYCORE,
-    MAPFILES,
-    REPOSITORY,
-    TIMEOUT_S,
-    Program,
-    manycore_command,
-    wait_until,
-)
 
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.trace.chains import Messages
 from rmw_manycore_py.trace.files import load
 from rmw_manycore_py.trace.latency import latencies
+from support import IS_MANYCORE, MAPFILES, REPOSITORY, TIMEOUT_S, wait_until
+from support.processes.commands import manycore_command
+from support.processes.program import Program
+from support.sources.advice import quoted
 
 pytestmark = [
     pytest.mark.integration,

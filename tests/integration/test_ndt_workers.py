@@ -16,13 +16,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ndt_support import killed_as_they_come
-from ndt_world import pose, scan_at, street
-from processes import is_asleep, kill
-from support import wait_until
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap, WorkerMatcher
+from support import wait_until
+from support.nodes.scan_matching import killed_as_they_come
+from support.processes.inspection import is_asleep, kill
+from support.samples.ndt_world import pose, scan_at, street
 
 pytestmark = pytest.mark.integration
 

@@ -8,7 +8,10 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, MAPFILES, manycore_command, unique_platform, wait_until
+
+from support import IS_MANYCORE, MAPFILES, wait_until
+from support.processes.commands import manycore_command
+from support.processes.platforms import unique_platform
 
 pytestmark = [
     pytest.mark.integration,

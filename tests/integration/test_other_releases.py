@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from support import IS_MANYCORE, REPOSITORY, TESTS
 
 if not IS_MANYCORE:

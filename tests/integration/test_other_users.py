@@ -9,16 +9,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from own_shm import can_mount, own_shm_command
-from support import (
-    IS_MANYCORE,
-    PLATFORMS,
-    TIMEOUT_S,
-    Program,
-    environment,
-    example_command,
-    manycore_command,
-)
+
+from support import IS_MANYCORE, TIMEOUT_S
+from support.processes.commands import example_command, manycore_command
+from support.processes.own_shm import can_mount, own_shm_command
+from support.processes.platforms import PLATFORMS, environment
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,

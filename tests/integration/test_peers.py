@@ -6,7 +6,8 @@ from __future__ import annotations
 import signal
 
 import pytest
-from support import peer_command
+
+from support.processes.commands import peer_command
 
 pytestmark = pytest.mark.integration
 

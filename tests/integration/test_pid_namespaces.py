@@ -10,10 +10,12 @@ from pathlib import Path
 
 import pytest
 import rclpy
-from processes import cpu_time_s, kill, receive_threads_of
-from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import String
-from support import IS_MANYCORE, example_command, peer_command, wait_until
+
+from support import IS_MANYCORE, wait_until
+from support.nodes.ros import announce, peer_node, spin_until
+from support.processes.commands import example_command, peer_command
+from support.processes.inspection import cpu_time_s, kill, receive_threads_of
 
 pytestmark = [
     pytest.mark.integration,

@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from support import REPOSITORY, TIMEOUT_S
 
 import rmw_manycore_py as manycore
+from support import REPOSITORY, TIMEOUT_S
 
 pytestmark = pytest.mark.integration
 

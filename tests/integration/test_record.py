@@ -11,17 +11,19 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from bridging import OUTSIDE
 from mcap.exceptions import EndOfFile
 from mcap.reader import NonSeekingReader, make_reader
 from mcap_ros2.decoder import DecoderFactory
-from recordings import text_in, write_texts
-from ros_support import announce, peer_node, spin_until, type_of
 from rosbags.highlevel import AnyReader
-from speakers import hear, qos, say
-from support import IS_MANYCORE, leftovers, manycore_command, peer_command, wait_until
 
 from rmw_manycore_py.recording.recording import Recording
+from support import IS_MANYCORE, wait_until
+from support.nodes.bridging import OUTSIDE
+from support.nodes.ros import announce, peer_node, spin_until, type_of
+from support.nodes.speakers import hear, qos, say
+from support.processes.commands import manycore_command, peer_command
+from support.processes.platforms import leftovers
+from support.samples.recordings import text_in, write_texts
 
 pytestmark = [
     pytest.mark.integration,

@@ -4,18 +4,19 @@
 from __future__ import annotations
 
 import pytest
-from advice import run_quoted
-from building import write_definitions
-from own_shm import can_mount
-from recordings import NS_PER_S, START_NS, string_row, text_message, write_texts
-from ros_support import peer_node, spin_until, type_of
-from speakers import hear
-from support import IS_MANYCORE, manycore_command, peer_command, wait_until
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from rmw_manycore_py.native._transport import Process, Qos
 from rmw_manycore_py.recording.output import Output
 from rmw_manycore_py.recording.recording import Recording
+from support import IS_MANYCORE, wait_until
+from support.installs.building import write_definitions
+from support.nodes.ros import peer_node, spin_until, type_of
+from support.nodes.speakers import hear
+from support.processes.commands import manycore_command, peer_command
+from support.processes.own_shm import can_mount
+from support.samples.recordings import NS_PER_S, START_NS, string_row, text_message, write_texts
+from support.sources.advice import run_quoted
 
 pytestmark = [
     pytest.mark.integration,

@@ -8,20 +8,15 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-import reference_system as described
 import yaml
-from support import (
-    IS_MANYCORE,
-    MAPFILES,
-    TIMEOUT_S,
-    Program,
-    leftovers,
-    manycore_command,
-    wait_until,
-)
 
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.papers.reference_system.bench.text import losses_in, reports_in, values
+from support import IS_MANYCORE, MAPFILES, TIMEOUT_S, wait_until
+from support.processes.commands import manycore_command
+from support.processes.platforms import leftovers
+from support.processes.program import Program
+from support.samples import reference_system as described
 
 pytestmark = [
     pytest.mark.integration,

@@ -7,9 +7,11 @@ import shutil
 import sys
 
 import pytest
-from advice import run_quoted
-from processes import has_receive_threads
-from support import PLATFORMS, wait_until
+
+from support import wait_until
+from support.processes.inspection import has_receive_threads
+from support.processes.platforms import PLATFORMS
+from support.sources.advice import run_quoted
 
 pytestmark = pytest.mark.integration
 EXAMPLES = "rmw_manycore_py.examples"

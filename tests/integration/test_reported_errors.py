@@ -7,7 +7,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, TIMEOUT_S, environment, example_command, manycore_command
+
+from support import IS_MANYCORE, TIMEOUT_S
+from support.processes.commands import example_command, manycore_command
+from support.processes.platforms import environment
 
 pytestmark = [
     pytest.mark.integration,

@@ -6,7 +6,10 @@ from __future__ import annotations
 import sys
 
 import pytest
-from support import IS_MANYCORE, MAPFILES, leftovers, manycore_command, wait_until
+
+from support import IS_MANYCORE, MAPFILES, wait_until
+from support.processes.commands import manycore_command
+from support.processes.platforms import leftovers
 
 pytestmark = [
     pytest.mark.integration,

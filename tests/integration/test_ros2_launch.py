@@ -12,12 +12,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-import ros2_packages
-from bridging import Bridge
-from speakers import hear
-from support import IS_MANYCORE, Program, environment, wait_until
 
 from rmw_manycore_py.native import _transport
+from support import IS_MANYCORE, wait_until
+from support.installs import ros2_packages
+from support.nodes.bridging import Bridge
+from support.nodes.speakers import hear
+from support.processes.platforms import environment
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,

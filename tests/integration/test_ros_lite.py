@@ -8,14 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support import (
-    IS_MANYCORE,
-    TIMEOUT_S,
-    Program,
-    leftovers,
-    manycore_command,
-    wait_until,
-)
 
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 from rmw_manycore_py.native import _transport
@@ -30,6 +22,10 @@ from rmw_manycore_py.papers.roslite.variants import (
 )
 from rmw_manycore_py.papers.roslite.vehicle.course import Course
 from rmw_manycore_py.papers.roslite.vehicle.drive_log import DriveFigures
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
+from support.processes.commands import manycore_command
+from support.processes.platforms import leftovers
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,

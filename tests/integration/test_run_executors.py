@@ -9,7 +9,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, environment, manycore_command
+
+from support import IS_MANYCORE
+from support.processes.commands import manycore_command
+from support.processes.platforms import environment
 
 pytestmark = [
     pytest.mark.integration,

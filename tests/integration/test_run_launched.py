@@ -11,7 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support import IS_MANYCORE, Program, manycore_command
+
+from support import IS_MANYCORE
+from support.processes.commands import manycore_command
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,

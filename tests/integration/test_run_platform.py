@@ -10,10 +10,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from processes import kill_all
-from support import IS_MANYCORE, MAPFILES, Program, leftovers, manycore_command, wait_until
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
+from support import IS_MANYCORE, MAPFILES, wait_until
+from support.processes.commands import manycore_command
+from support.processes.inspection import kill_all
+from support.processes.platforms import leftovers
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,

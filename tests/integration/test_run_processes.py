@@ -14,13 +14,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support import TIMEOUT_S, Program, peer_command, wait_until
 
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import STOP_STEPS
 from rmw_manycore_py.launch.runner import Runner
 from rmw_manycore_py.platform.topology import Core
 from rmw_manycore_py.process.signals import signal_inbox
+from support import TIMEOUT_S, wait_until
+from support.processes.commands import peer_command
+from support.processes.program import Program
 
 pytestmark = pytest.mark.integration
 

@@ -7,7 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, TIMEOUT_S, manycore_command
+
+from support import IS_MANYCORE, TIMEOUT_S
+from support.processes.commands import manycore_command
 
 pytestmark = [
     pytest.mark.integration,

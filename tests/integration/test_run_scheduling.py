@@ -9,10 +9,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, manycore_command
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from rmw_manycore_py.process.scheduling import Scheduling, refusal
+from support import IS_MANYCORE
+from support.processes.commands import manycore_command
 
 pytestmark = [
     pytest.mark.integration,

@@ -9,8 +9,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from forked import forked_manycore
-from support import IS_MANYCORE, Program
+
+from support import IS_MANYCORE
+from support.peers.programs import forked_manycore
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,

@@ -10,12 +10,13 @@ import sys
 from pathlib import Path
 
 import pytest
-from support import Program, peer_command
 
 from rmw_manycore_py.launch import runner
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.platform.topology import Core
 from rmw_manycore_py.process.signals import signal_inbox
+from support.processes.commands import peer_command
+from support.processes.program import Program
 
 pytestmark = pytest.mark.integration
 

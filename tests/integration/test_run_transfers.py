@@ -8,7 +8,10 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, leftovers, manycore_command
+
+from support import IS_MANYCORE
+from support.processes.commands import manycore_command
+from support.processes.platforms import leftovers
 
 pytestmark = [
     pytest.mark.integration,

@@ -8,20 +8,14 @@ import subprocess
 import sys
 
 import pytest
-from advice import run_quoted
-from own_shm import can_mount, own_shm_command
-from ros_support import announce
-from support import (
-    IS_MANYCORE,
-    MAPFILES,
-    TIMEOUT_S,
-    Program,
-    environment,
-    example_command,
-    manycore_command,
-    peer_command,
-    unique_platform,
-)
+
+from support import IS_MANYCORE, MAPFILES, TIMEOUT_S
+from support.nodes.ros import announce
+from support.processes.commands import example_command, manycore_command, peer_command
+from support.processes.own_shm import can_mount, own_shm_command
+from support.processes.platforms import environment, unique_platform
+from support.processes.program import Program
+from support.sources.advice import run_quoted
 
 SIZE_NEEDED = re.compile(r"\b\d[\d,.]* ?(bytes|[KMG]iB)")
 

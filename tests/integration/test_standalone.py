@@ -9,8 +9,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from processes import has_receive_threads
-from support import IS_MANYCORE, PLATFORMS, RMW, environment, example_command, wait_until
+
+from support import IS_MANYCORE, RMW, wait_until
+from support.processes.commands import example_command
+from support.processes.inspection import has_receive_threads
+from support.processes.platforms import PLATFORMS, environment
 
 pytestmark = pytest.mark.integration
 

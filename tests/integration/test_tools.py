@@ -11,18 +11,12 @@ import sys
 from typing import Any
 
 import pytest
-from forked import forked_manycore
-from processes import kill_all
-from support import (
-    IS_MANYCORE,
-    MAPFILES,
-    PLATFORMS,
-    environment,
-    example_command,
-    leftovers,
-    manycore_command,
-    wait_until,
-)
+
+from support import IS_MANYCORE, MAPFILES, wait_until
+from support.peers.programs import forked_manycore
+from support.processes.commands import example_command, manycore_command
+from support.processes.inspection import kill_all
+from support.processes.platforms import PLATFORMS, environment, leftovers
 
 pytestmark = [
     pytest.mark.integration,

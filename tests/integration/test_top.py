@@ -7,9 +7,12 @@ import json
 import signal
 
 import pytest
-from forked import forked_manycore
-from person import Person
-from support import IS_MANYCORE, environment, manycore_command
+
+from support import IS_MANYCORE
+from support.peers.programs import forked_manycore
+from support.processes.commands import manycore_command
+from support.processes.person import Person
+from support.processes.platforms import environment
 
 pytestmark = [
     pytest.mark.integration,

@@ -10,16 +10,18 @@ import time
 from collections import defaultdict
 
 import pytest
-from forked import forked_manycore
-from processes import kill, receive_threads_of
-from speakers import hear as hear_topic
-from speakers import say
-from support import IS_MANYCORE, MAPFILES, PLATFORMS, entries, manycore_command, wait_until
 
 from rmw_manycore_py.trace.events import Kind
 from rmw_manycore_py.trace.files import load
 from rmw_manycore_py.trace.flows import NO_THREAD, flows_of
 from rmw_manycore_py.view.tracing import Tracing
+from support import IS_MANYCORE, MAPFILES, wait_until
+from support.nodes.speakers import hear as hear_topic
+from support.nodes.speakers import say
+from support.peers.programs import forked_manycore
+from support.processes.commands import manycore_command
+from support.processes.inspection import kill, receive_threads_of
+from support.processes.platforms import PLATFORMS, entries
 
 pytestmark = [
     pytest.mark.integration,

@@ -12,7 +12,9 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, TESTS, example_command
+
+from support import IS_MANYCORE, TESTS
+from support.processes.commands import example_command
 
 pytestmark = [
     pytest.mark.integration,

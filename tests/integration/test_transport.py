@@ -12,12 +12,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from advice import run_quoted
-from support import TIMEOUT_S, leftovers, wait_until
 
 import rmw_manycore_py as manycore
 from rmw_manycore_py import transport
 from rmw_manycore_py.transport.multi_array import TYPES
+from support import TIMEOUT_S, wait_until
+from support.processes.platforms import leftovers
+from support.sources.advice import run_quoted
 
 pytestmark = pytest.mark.integration
 

@@ -7,7 +7,6 @@ import os
 from collections.abc import Iterator
 
 import pytest
-from support import leftovers, wait_until
 
 from rmw_manycore_py.native._transport import (
     Configurator,
@@ -17,6 +16,8 @@ from rmw_manycore_py.native._transport import (
     Qos,
     TopicConfiguration,
 )
+from support import wait_until
+from support.processes.platforms import leftovers
 
 pytestmark = pytest.mark.integration
 

@@ -12,13 +12,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from processes import cpu_time_s, is_asleep, is_stopped, times_run
-from ros_support import announce, peer_node, spin_until
-from support import TIMEOUT_S, peer_command, wait_until
 
 import rmw_manycore_py as manycore
 from rmw_manycore_py import transport
 from rmw_manycore_py.native import _transport
+from support import TIMEOUT_S, wait_until
+from support.nodes.ros import announce, peer_node, spin_until
+from support.processes.commands import peer_command
+from support.processes.inspection import cpu_time_s, is_asleep, is_stopped, times_run
 
 pytestmark = pytest.mark.integration
 

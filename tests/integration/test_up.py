@@ -13,19 +13,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from forked import run_manycore
-from support import (
-    IS_MANYCORE,
-    TIMEOUT_S,
-    Program,
-    leftovers,
-    manycore_command,
-    peer_command,
-    wait_until,
-)
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from rmw_manycore_py.launch.runs.directory import RunDirectory, runs_of
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
+from support.peers.programs import run_manycore
+from support.processes.commands import manycore_command, peer_command
+from support.processes.platforms import leftovers
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,

@@ -8,9 +8,11 @@ import sys
 from contextlib import suppress
 
 import pytest
-from forked import forked_manycore
-from ros_support import announce, peer_node
-from support import IS_MANYCORE, manycore_command, peer_command
+
+from support import IS_MANYCORE
+from support.nodes.ros import announce, peer_node
+from support.peers.programs import forked_manycore
+from support.processes.commands import manycore_command, peer_command
 
 pytestmark = [
     pytest.mark.integration,

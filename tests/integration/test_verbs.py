@@ -9,9 +9,11 @@ import sys
 
 import pytest
 import yaml
-from forked import forked_manycore
-from ros_support import announce, peer_node
-from support import IS_MANYCORE, example_command, manycore_command, peer_command
+
+from support import IS_MANYCORE
+from support.nodes.ros import announce, peer_node
+from support.peers.programs import forked_manycore
+from support.processes.commands import example_command, manycore_command, peer_command
 
 pytestmark = [
     pytest.mark.integration,

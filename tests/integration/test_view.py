@@ -16,12 +16,13 @@ import xml.etree.ElementTree as ElementTree
 from contextlib import closing
 
 import pytest
-from forked import forked_example, forked_manycore
-from support import IS_MANYCORE, PLATFORMS, TIMEOUT_S, leftovers, wait_until
 
 from rmw_manycore_py.bench.idle import wait_until_quiet, wake_ups
 from rmw_manycore_py.platform.monitor.watch import Watch
 from rmw_manycore_py.view.client_user import user_of_client
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
+from support.peers.programs import forked_example, forked_manycore
+from support.processes.platforms import PLATFORMS, leftovers
 
 pytestmark = [
     pytest.mark.integration,
@@ -33,7 +34,7 @@ pytestmark = [
 MATCHER = """
 import os
 import rclpy
-from ndt_world import pose, scan_at, street
+from support.samples.ndt_world import pose, scan_at, street
 from rmw_manycore_py.ndt import MatcherOptions, VoxelMap, WorkerMatcher
 
 rclpy.init()

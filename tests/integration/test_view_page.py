@@ -6,10 +6,10 @@ from __future__ import annotations
 import signal
 
 import pytest
-from forked import forked_example
-from support import IS_MANYCORE, wait_until
 
 from rmw_manycore_py.trace.files import load
+from support import IS_MANYCORE, wait_until
+from support.peers.programs import forked_example
 
 pytestmark = [
     pytest.mark.integration,
@@ -25,7 +25,7 @@ NAMELESS = ("list", "log", "status")  # read by their content
 
 @pytest.fixture(scope="module")
 def chromium(tmp_path_factory):
-    from browser import Browser
+    from support.processes.browser import Browser
 
     opened = Browser(tmp_path_factory.mktemp("downloads"))
     yield opened

@@ -13,6 +13,7 @@ from base64 import b64encode
 from contextlib import ExitStack, suppress
 
 import pytest
+
 from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
 pytestmark = [

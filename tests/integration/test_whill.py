@@ -14,8 +14,10 @@ from typing import Any
 
 import pytest
 import yaml
-from advice import quoted, run_quoted
-from support import IS_MANYCORE, TIMEOUT_S, manycore_command
+
+from support import IS_MANYCORE, TIMEOUT_S
+from support.processes.commands import manycore_command
+from support.sources.advice import quoted, run_quoted
 
 pytestmark = [
     pytest.mark.integration,

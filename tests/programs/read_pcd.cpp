@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// Reads PCD files with PCL, for tests/pcl_results.py: a path per line of standard input, a line of
-// standard output for each, "refused" or x, y and z of each point. Not part of the build:
+// Reads PCD files with PCL, for tests/support/comparisons/pcl_results.py: a path per line of
+// standard input, a line of standard output for each, "refused" or x, y and z of each point. Not
+// part of the build:
 //
 //   apt install libpcl-dev
 //   g++ -std=c++14 $(pkg-config --cflags --libs pcl_io) tests/programs/read_pcd.cpp -o read_pcd

@@ -11,11 +11,15 @@ from typing import Any
 
 import pytest
 import rclpy
-from domains import domain_of
-from ndt_support import Stack, matcher_command, street_map
 from rclpy.node import Node
-from ros_support import announce
-from support import IS_MANYCORE, Program, leftovers, peer_command, wait_until
+
+from support import IS_MANYCORE, wait_until
+from support.nodes.ros import announce
+from support.nodes.scan_matching import Stack, matcher_command, street_map
+from support.processes.commands import peer_command
+from support.processes.domains import domain_of
+from support.processes.platforms import leftovers
+from support.processes.program import Program
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

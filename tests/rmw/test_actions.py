@@ -6,13 +6,14 @@ from __future__ import annotations
 import pytest
 import rclpy
 from action_msgs.msg import GoalStatus
-from forked import forked_example
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.node import Node
 from rclpy.task import Future
-from ros_support import peer_node, spin_until
-from support import TIMEOUT_S
 from test_msgs.action import Fibonacci
+
+from support import TIMEOUT_S
+from support.nodes.ros import peer_node, spin_until
+from support.peers.programs import forked_example
 
 FAST = ("--ros-args", "-p", "rate_hz:=50.0")
 

@@ -8,12 +8,13 @@ import rclpy
 from autoware_internal_debug_msgs.msg import Float32Stamped, Int32Stamped
 from geometry_msgs.msg import TransformStamped
 from rclpy.action import ActionClient, ActionServer
-from ros_support import announce, peer_node, spin_until
-from support import TIMEOUT_S
 from tf2_msgs.action import LookupTransform
 from tf2_msgs.msg import TF2Error, TFMessage
 from tf2_msgs.srv import FrameGraph
 from tier4_localization_msgs.srv import PoseWithCovarianceStamped
+
+from support import TIMEOUT_S
+from support.nodes.ros import announce, peer_node, spin_until
 
 
 def some_messages() -> list[object]:

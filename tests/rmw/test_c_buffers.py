@@ -7,7 +7,15 @@ import ctypes
 from typing import Any
 
 import pytest
-from c_support import (
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Path
+from rclpy.serialization import deserialize_message, serialize_message
+from sensor_msgs.msg import JointState, PointCloud2, PointField
+from std_msgs.msg import Header, String
+from test_msgs.msg import BasicTypes, MultiNested, Strings, UnboundedSequences, WStrings
+
+from support import IS_MANYCORE
+from support.nodes.handles import (
     ALLOCATE,
     FREE,
     RESIZE,
@@ -20,14 +28,7 @@ from c_support import (
     rmw_handle,
     type_support,
 )
-from geometry_msgs.msg import PoseStamped
-from nav_msgs.msg import Path
-from rclpy.serialization import deserialize_message, serialize_message
-from ros_support import lost_messages, spin_until
-from sensor_msgs.msg import JointState, PointCloud2, PointField
-from std_msgs.msg import Header, String
-from support import IS_MANYCORE
-from test_msgs.msg import BasicTypes, MultiNested, Strings, UnboundedSequences, WStrings
+from support.nodes.ros import lost_messages, spin_until
 
 OK, ERROR, BAD_ALLOC = 0, 1, 10
 

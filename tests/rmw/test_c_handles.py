@@ -8,13 +8,23 @@ import struct
 from typing import Any
 
 import pytest
-from c_support import Allocator, Bytes, rcl, rcl_handle, rcutils, rmw, rmw_handle, take_points
 from geometry_msgs.msg import Point
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
-from ros_support import spin_until
 from std_srvs.srv import Trigger
+
 from support import IS_MANYCORE
+from support.nodes.handles import (
+    Allocator,
+    Bytes,
+    rcl,
+    rcl_handle,
+    rcutils,
+    rmw,
+    rmw_handle,
+    take_points,
+)
+from support.nodes.ros import spin_until
 
 OK, INVALID_ARGUMENT = 0, 11
 POINT_BYTES = 24  # three doubles in memory, and behind four bytes of header in CDR

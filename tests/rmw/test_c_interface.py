@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from support import IS_MANYCORE, REPOSITORY
 
 if not IS_MANYCORE:

@@ -11,8 +11,9 @@ from typing import Any
 
 import pytest
 import rclpy
-from c_support import rcl, rcl_handle, rmw
+
 from support import IS_MANYCORE, TIMEOUT_S
+from support.nodes.handles import rcl, rcl_handle, rmw
 
 OK, TIMEOUT = 0, 2
 

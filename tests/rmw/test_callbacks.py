@@ -19,10 +19,11 @@ from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.experimental import EventsExecutor
 from rclpy.qos import QoSProfile
-from ros_support import announce, peer_node
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
+
 from support import RMW, TIMEOUT_S
+from support.nodes.ros import announce, peer_node
 
 DEADLINE_MISSED, PUBLISHER_MATCHED = 0, 4  # of rcl_publisher_event_type_t
 

@@ -14,12 +14,13 @@ from typing import Any
 
 import pytest
 import rclpy
-from c_support import rcl, rcl_handle
 from rclpy.node import Node
 from rclpy.qos import HistoryPolicy, QoSProfile
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
+
 from support import IS_MANYCORE, TIMEOUT_S, wait_until
+from support.nodes.handles import rcl, rcl_handle
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS calls from other threads, too")
 

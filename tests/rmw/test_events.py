@@ -20,9 +20,10 @@ from rclpy.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from ros_support import announce, peer_node, spin, spin_until
 from std_msgs.msg import Int32, String
+
 from support import IS_MANYCORE
+from support.nodes.ros import announce, peer_node, spin, spin_until
 
 BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 VOLATILE = QoSProfile(depth=10)

@@ -17,11 +17,12 @@ from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallba
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
-from ros_support import announce, peer_node, spinning_thread
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
-from support import TIMEOUT_S
 from test_msgs.action import Fibonacci
+
+from support import TIMEOUT_S
+from support.nodes.ros import announce, peer_node, spinning_thread
 
 THREADS = 4
 EXECUTORS = {

@@ -13,10 +13,11 @@ import pytest
 import rclpy
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.executors import SingleThreadedExecutor
-from ros_support import spin_until
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
+
 from support import IS_MANYCORE, TIMEOUT_S
+from support.nodes.ros import spin_until
 
 pytestmark = [
     # Python 3.12 and newer warn about what is tested here.

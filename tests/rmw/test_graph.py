@@ -9,14 +9,15 @@ from pathlib import Path
 
 import pytest
 import rclpy
-from forked import forked_example
 from rclpy.duration import Duration, Infinite
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.topic_endpoint_info import TopicEndpointTypeEnum
-from ros_support import peer_node, spin_until
 from std_msgs.msg import String, UInt8MultiArray
 from std_srvs.srv import Trigger
+
+from support.nodes.ros import peer_node, spin_until
+from support.peers.programs import forked_example
 
 QOS = QoSProfile(
     depth=7,

@@ -8,11 +8,12 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from c_support import rcl, rcl_handle, rcutils, type_support
 from geometry_msgs.msg import Point, PoseWithCovariance
-from ros_support import spin_until
 from std_msgs.msg import Empty, String, UInt8MultiArray
+
 from support import IS_MANYCORE
+from support.nodes.handles import rcl, rcl_handle, rcutils, type_support
+from support.nodes.ros import spin_until
 
 OK, ERROR, UNSUPPORTED, TAKE_FAILED = 0, 1, 3, 401
 

@@ -9,19 +9,20 @@ import sys
 from typing import Any
 
 import pytest
-from c_support import rmw, rmw_handle, take_points
 from geometry_msgs.msg import Point
 from rcl_interfaces.msg import Parameter, ParameterDescriptor, SetParametersResult
 from rcl_interfaces.srv import DescribeParameters, SetParameters
 from rclpy._rclpy_pybind11 import RMWError
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.serialization import deserialize_message, serialize_message
-from ros_support import announce, lost_messages, spin_until
 from sensor_msgs.msg import JointState, PointCloud2, PointField
 from std_msgs.msg import Float64MultiArray, String
-from support import IS_MANYCORE, TIMEOUT_S
 from test_msgs.msg import UnboundedSequences, WStrings
 from test_msgs.srv import BasicTypes
+
+from support import IS_MANYCORE, TIMEOUT_S
+from support.nodes.handles import rmw, rmw_handle, take_points
+from support.nodes.ros import announce, lost_messages, spin_until
 
 OK = 0
 HUGE = 0x7FFFFFFF.to_bytes(4, "little")

@@ -7,15 +7,16 @@ import os
 
 import pytest
 import rclpy
-from forked import forked_example
 from rcl_interfaces.msg import Log
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import String
-from support import IS_MANYCORE, PLATFORMS
 
 from rmw_manycore_py.ros.domain import default_platform
+from support import IS_MANYCORE
+from support.nodes.ros import announce, peer_node, spin_until
+from support.peers.programs import forked_example
+from support.processes.platforms import PLATFORMS
 
 needs_manycore = pytest.mark.skipif(not IS_MANYCORE, reason="about what only DDS has")
 

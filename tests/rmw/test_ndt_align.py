@@ -8,15 +8,23 @@ from typing import Any
 
 import numpy as np
 from autoware_internal_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
-from ndt_support import COVARIANCE, NEAR, TRUTH, error_m, matcher_command, street_map, street_scan
-from ros_support import spin_until
 from std_srvs.srv import SetBool
-from support import TIMEOUT_S
 from tier4_localization_msgs.srv import PoseWithCovarianceStamped as Tier4AlignService
 from visualization_msgs.msg import MarkerArray
 
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
 from rmw_manycore_py.ndt.messages.conversions import matrix_of, pose_with_covariance
+from support import TIMEOUT_S
+from support.nodes.ros import spin_until
+from support.nodes.scan_matching import (
+    COVARIANCE,
+    NEAR,
+    TRUTH,
+    error_m,
+    matcher_command,
+    street_map,
+    street_scan,
+)
 
 
 def answer_of(stack: Any, client: Any, request: Any) -> Any:

@@ -7,13 +7,20 @@ from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from ndt_support import COVARIANCE, LIDAR, TRUTH, error_m, matcher_command, street_map
-from ros_support import spin_until
 
 from rmw_manycore_py.ndt.messages.conversions import nanoseconds, pose_with_covariance
 from rmw_manycore_py.ndt.messages.point_cloud import encode
 from rmw_manycore_py.ndt.simulation.drive import Surroundings, poses_along
 from rmw_manycore_py.ndt.simulation.street import build_street
+from support.nodes.ros import spin_until
+from support.nodes.scan_matching import (
+    COVARIANCE,
+    LIDAR,
+    TRUTH,
+    error_m,
+    matcher_command,
+    street_map,
+)
 
 X_M, SPEED_M_S = 5.0, 20.0
 OK = b"\x00"

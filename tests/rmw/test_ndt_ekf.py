@@ -10,14 +10,14 @@ import pytest
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseWithCovarianceStamped, TwistWithCovarianceStamped
 from nav_msgs.msg import Odometry
-from ndt_support import COVARIANCE, command
 from rclpy.node import Node
-from ros_support import spin_until
 from rosgraph_msgs.msg import Clock
-from support import Program
 
 from rmw_manycore_py.ndt.geometry.poses import distance_m, from_xyz_rpy
 from rmw_manycore_py.ndt.messages.conversions import matrix_of, pose_with_covariance
+from support.nodes.ros import spin_until
+from support.nodes.scan_matching import COVARIANCE, command
+from support.processes.program import Program
 
 HERE = from_xyz_rpy((3.0, -2.0, 1.0), (0.0, 0.0, 0.5))
 THERE = from_xyz_rpy((5.0, -2.0, 1.0), (0.0, 0.0, 0.5))

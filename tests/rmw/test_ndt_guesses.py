@@ -7,7 +7,14 @@ import pytest
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped
-from ndt_support import (
+
+from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
+from rmw_manycore_py.ndt.messages.conversions import matrix_of, nanoseconds, pose_with_covariance
+from rmw_manycore_py.ndt.messages.point_cloud import encode
+from rmw_manycore_py.ndt.nodes.scan_matcher.guesses import PERIODS
+from support import TIMEOUT_S
+from support.nodes.ros import spin_until
+from support.nodes.scan_matching import (
     COVARIANCE,
     NEAR,
     TRUTH,
@@ -16,13 +23,6 @@ from ndt_support import (
     street_map,
     street_scan,
 )
-from ros_support import spin_until
-from support import TIMEOUT_S
-
-from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
-from rmw_manycore_py.ndt.messages.conversions import matrix_of, nanoseconds, pose_with_covariance
-from rmw_manycore_py.ndt.messages.point_cloud import encode
-from rmw_manycore_py.ndt.nodes.scan_matcher.guesses import PERIODS
 
 
 def stamp_of_ns(time_ns: int) -> Time:

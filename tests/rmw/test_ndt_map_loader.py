@@ -15,8 +15,15 @@ from autoware_map_msgs.srv import (
     GetPartialPointCloudMap,
     GetSelectedPointCloudMap,
 )
-from forked import forked_node
-from ndt_support import (
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
+from rmw_manycore_py.ndt.maps.map_tiles import open_map, write_tiles
+from rmw_manycore_py.ndt.messages.point_cloud import decode
+from support import TIMEOUT_S
+from support.nodes.ros import spin_until
+from support.nodes.scan_matching import (
     NEAR,
     TRUTH,
     error_m,
@@ -25,14 +32,8 @@ from ndt_support import (
     street_map,
     street_scan,
 )
-from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
-from ros_support import spin_until
-from support import TIMEOUT_S, Program
-
-from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
-from rmw_manycore_py.ndt.maps.map_tiles import open_map, write_tiles
-from rmw_manycore_py.ndt.messages.point_cloud import decode
+from support.peers.programs import forked_node
+from support.processes.program import Program
 
 OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"
 DIFFERENTIAL = "service/get_differential_pcd_map"

@@ -9,7 +9,17 @@ from contextlib import suppress
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
-from ndt_support import (
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from sensor_msgs.msg import PointCloud2
+
+from rmw_manycore_py.native import _transport
+from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, inverse, transform
+from rmw_manycore_py.ndt.maps.map_tiles import open_map, write_tiles
+from rmw_manycore_py.ndt.messages.conversions import nanoseconds
+from rmw_manycore_py.ndt.messages.point_cloud import decode, encode
+from support import IS_MANYCORE
+from support.nodes.ros import spin_until
+from support.nodes.scan_matching import (
     NEAR,
     TRUTH,
     Stack,
@@ -22,16 +32,6 @@ from ndt_support import (
     two_host_cpus,
     write_boastful_npz,
 )
-from rclpy.qos import DurabilityPolicy, QoSProfile
-from ros_support import spin_until
-from sensor_msgs.msg import PointCloud2
-from support import IS_MANYCORE
-
-from rmw_manycore_py.native import _transport
-from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, inverse, transform
-from rmw_manycore_py.ndt.maps.map_tiles import open_map, write_tiles
-from rmw_manycore_py.ndt.messages.conversions import nanoseconds
-from rmw_manycore_py.ndt.messages.point_cloud import decode, encode
 
 OK, ERROR = b"\x00", b"\x02"
 LEFT_BYTES = 64 * 1024  # less than any map needs

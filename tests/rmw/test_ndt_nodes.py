@@ -9,9 +9,19 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from forked import forked_node
 from geometry_msgs.msg import PoseWithCovarianceStamped
-from ndt_support import (
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from sensor_msgs.msg import PointCloud2
+
+from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
+from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
+from rmw_manycore_py.ndt.maps.map_file import write_points
+from rmw_manycore_py.ndt.maps.map_tiles import write_tiles
+from rmw_manycore_py.ndt.messages.conversions import matrix_of, pose_with_covariance
+from rmw_manycore_py.ndt.messages.point_cloud import decode, encode
+from rmw_manycore_py.ndt.messages.point_times import decode_timed, time_field
+from support.nodes.ros import spin_until
+from support.nodes.scan_matching import (
     COVARIANCE,
     TRUTH,
     Stack,
@@ -23,18 +33,8 @@ from ndt_support import (
     street_scan,
     write_boastful_npz,
 )
-from rclpy.qos import DurabilityPolicy, QoSProfile
-from ros_support import spin_until
-from sensor_msgs.msg import PointCloud2
-from support import Program
-
-from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
-from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
-from rmw_manycore_py.ndt.maps.map_file import write_points
-from rmw_manycore_py.ndt.maps.map_tiles import write_tiles
-from rmw_manycore_py.ndt.messages.conversions import matrix_of, pose_with_covariance
-from rmw_manycore_py.ndt.messages.point_cloud import decode, encode
-from rmw_manycore_py.ndt.messages.point_times import decode_timed, time_field
+from support.peers.programs import forked_node
+from support.processes.program import Program
 
 INITIALIZER = "rmw_manycore_py.ndt.nodes.pose_initializer"
 KEPT = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

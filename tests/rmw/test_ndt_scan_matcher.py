@@ -14,22 +14,7 @@ from autoware_internal_debug_msgs.msg import Float32Stamped, Int32Stamped
 from autoware_internal_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped, TransformStamped
-from ndt_support import (
-    COVARIANCE,
-    NEAR,
-    TRUTH,
-    error_m,
-    few,
-    killed_as_they_come,
-    matcher_command,
-    nan_points,
-    street_map,
-    street_scan,
-    two_host_cpus,
-    workers_below,
-)
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from ros_support import spin_until
 from sensor_msgs.msg import PointCloud2
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
@@ -43,6 +28,21 @@ from rmw_manycore_py.ndt.messages.conversions import (
     transform_stamped,
 )
 from rmw_manycore_py.ndt.messages.point_cloud import decode, encode
+from support.nodes.ros import spin_until
+from support.nodes.scan_matching import (
+    COVARIANCE,
+    NEAR,
+    TRUTH,
+    error_m,
+    few,
+    killed_as_they_come,
+    matcher_command,
+    nan_points,
+    street_map,
+    street_scan,
+    two_host_cpus,
+    workers_below,
+)
 
 GENERATOR = np.random.default_rng(3)
 OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"

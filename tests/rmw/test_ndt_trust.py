@@ -13,7 +13,15 @@ from typing import Any
 import numpy as np
 import pytest
 from geometry_msgs.msg import PoseWithCovarianceStamped
-from ndt_support import (
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.nodes.scan_matcher.real_time import schedule_in_real_time
+from rmw_manycore_py.ndt.simulation.drive import poses_along
+from support import TIMEOUT_S, wait_until
+from support.nodes.ros import spin_until
+from support.nodes.scan_matching import (
     TRUTH,
     error_m,
     matcher_command,
@@ -22,14 +30,6 @@ from ndt_support import (
     two_host_cpus,
     workers_below,
 )
-from ros_support import spin_until
-from support import TIMEOUT_S, wait_until
-
-from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
-from rmw_manycore_py.ndt.geometry import poses
-from rmw_manycore_py.ndt.nodes.scan_matcher.real_time import schedule_in_real_time
-from rmw_manycore_py.ndt.simulation.drive import poses_along
 
 FAR = poses_along([14.0])[0]  # farther than an alignment from TRUTH converges
 PRIORITY = 5

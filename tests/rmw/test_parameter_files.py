@@ -7,8 +7,9 @@ import ast
 from pathlib import Path
 
 import pytest
-from comparing import FEW
-from parameter_files import (
+
+from support.comparisons.comparing import FEW
+from support.comparisons.parameter_files import (
     Generator,
     compare_command_lines,
     compare_files,
@@ -16,7 +17,7 @@ from parameter_files import (
     read_here,
     shown,
 )
-from support import peer_command
+from support.processes.commands import peer_command
 
 
 def test_generated_files_are_read_as_by_a_node(node, tmp_path: Path) -> None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import pytest
 import rclpy
-from forked import forked_example
 from rcl_interfaces.msg import ParameterEvent
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
-from ros_support import spin_until
+
 from support import TIMEOUT_S
+from support.nodes.ros import spin_until
+from support.peers.programs import forked_example
 
 
 @pytest.fixture

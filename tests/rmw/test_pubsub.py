@@ -10,9 +10,10 @@ import rclpy
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message, serialize_message
-from ros_support import announce, peer_node, spin_until, type_of
 from std_msgs.msg import String, UInt8MultiArray
 from test_msgs.message_fixtures import get_test_msg
+
+from support.nodes.ros import announce, peer_node, spin_until, type_of
 
 SIZES = [0, 1, 3, 64, 1000, 4096, 65_536, 1 << 20, 8 << 20, 100, 0]
 

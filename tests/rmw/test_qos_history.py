@@ -17,9 +17,10 @@ from rclpy.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from ros_support import announce, peer_node, spin, spin_until
 from std_msgs.msg import String, UInt8MultiArray
+
 from support import IS_MANYCORE
+from support.nodes.ros import announce, peer_node, spin, spin_until
 
 TRANSIENT_LOCAL = DurabilityPolicy.TRANSIENT_LOCAL
 LIFESPAN = Duration(seconds=0.1)

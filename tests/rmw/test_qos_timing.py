@@ -15,9 +15,10 @@ from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.experimental import EventsExecutor
 from rclpy.qos import LivelinessPolicy, QoSPolicyKind, QoSProfile
-from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import String
+
 from support import IS_MANYCORE, TIMEOUT_S, wait_until
+from support.nodes.ros import announce, peer_node, spin_until
 
 SHORT_S, LONG_S = 0.1, 3600.0
 LEASE_S = 1.0

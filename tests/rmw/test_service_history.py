@@ -11,10 +11,11 @@ import rclpy
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.node import Node
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
-from ros_support import lost_messages, peer_node, spin_until
 from std_msgs.msg import String
-from support import IS_MANYCORE, TIMEOUT_S
 from test_msgs.srv import BasicTypes
+
+from support import IS_MANYCORE, TIMEOUT_S
+from support.nodes.ros import lost_messages, peer_node, spin_until
 
 COUNT = 10
 DEEP = QoSProfile(depth=100)

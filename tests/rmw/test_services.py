@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from rclpy.qos import QoSProfile, qos_profile_system_default
 from rclpy.service_introspection import ServiceIntrospectionState
-from ros_support import announce, peer_node, spin, spin_until
 from service_msgs.msg import ServiceEventInfo
 from std_srvs.srv import SetBool
-from support import TIMEOUT_S
 from test_msgs.message_fixtures import get_msg_arrays
 from test_msgs.srv import Arrays, BasicTypes
+
+from support import TIMEOUT_S
+from support.nodes.ros import announce, peer_node, spin, spin_until
 
 
 def double(request: BasicTypes.Request, response: BasicTypes.Response) -> BasicTypes.Response:

@@ -10,16 +10,18 @@ from typing import Any
 
 import pytest
 import rclpy
-from c_support import rcl, rcl_handle
 from geometry_msgs.msg import Point
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
-from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import Int32, UInt8MultiArray
-from support import IS_MANYCORE, manycore_command
-from transferred import KINDS, configure
+
+from support import IS_MANYCORE
+from support.nodes.handles import rcl, rcl_handle
+from support.nodes.ros import announce, peer_node, spin_until
+from support.nodes.transferred import KINDS, configure
+from support.processes.commands import manycore_command
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="transfers are rmw_manycore's")
 

@@ -7,10 +7,11 @@ import ctypes
 from typing import Any
 
 import pytest
-from c_support import rcl, rcl_handle, rcutils, rmw, rmw_handle, type_support
 from geometry_msgs.msg import Point
-from ros_support import spin_until
+
 from support import IS_MANYCORE
+from support.nodes.handles import rcl, rcl_handle, rcutils, rmw, rmw_handle, type_support
+from support.nodes.ros import spin_until
 
 if not IS_MANYCORE:
     pytest.skip("Fast DDS has some of it", allow_module_level=True)

@@ -19,10 +19,11 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.task import Future
-from ros_support import announce, peer_node, spin_until, spinning_thread
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
+
 from support import IS_MANYCORE, TIMEOUT_S, wait_until
+from support.nodes.ros import announce, peer_node, spin_until, spinning_thread
 
 # The EventsExecutor does not wait: see test_executors.py and test_callbacks.py.
 EXECUTORS = [SingleThreadedExecutor, MultiThreadedExecutor]

@@ -9,10 +9,10 @@ from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import LivelinessPolicy, QoSProfile
-from ros_support import spin_until
 from std_msgs.msg import String
 
 from rmw_manycore_py.ndt.nodes.support.watched import watched
+from support.nodes.ros import spin_until
 
 BY_HAND = QoSProfile(
     depth=1,

@@ -11,16 +11,12 @@ from autoware_control_msgs.msg import Control
 from autoware_planning_msgs.msg import Trajectory as TrajectoryMessage
 from autoware_vehicle_msgs.msg import Engage, GearCommand, VelocityReport
 from builtin_interfaces.msg import Time
-from forked import forked_node
 from geometry_msgs.msg import Twist, TwistStamped, TwistWithCovarianceStamped
 from nav_msgs.msg import Odometry
-from ndt_support import ros_arguments
 from rclpy.node import Node
-from ros_support import spin_until
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu
 from std_srvs.srv import Trigger
-from support import Program
 from tier4_control_msgs.msg import GateMode
 from tier4_external_api_msgs.msg import Emergency, Heartbeat
 from tier4_vehicle_msgs.msg import VehicleEmergencyStamped
@@ -28,6 +24,10 @@ from whill_msgs.msg import ModelCr2State
 
 from rmw_manycore_py.papers.roslite2.course.shape import CourseShape
 from rmw_manycore_py.papers.roslite2.messages import trajectory_message
+from support.nodes.ros import spin_until
+from support.nodes.scan_matching import ros_arguments
+from support.peers.programs import forked_node
+from support.processes.program import Program
 
 Start = Callable[..., Program]
 GATE = "/vehicle_cmd_gate/service"

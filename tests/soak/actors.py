@@ -9,12 +9,13 @@ import time
 from collections.abc import Callable
 
 import rclpy
-from load import TOPIC, check_until_killed, fork, publish_until_killed
-from payload import make_message
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from ros_support import announce, peer_node
 from std_msgs.msg import UInt8MultiArray
 from std_srvs.srv import Trigger
+
+from support.nodes.load import TOPIC, check_until_killed, fork, publish_until_killed
+from support.nodes.payload import make_message
+from support.nodes.ros import announce, peer_node
 
 BURST_TOPIC = "bursts"
 SERVICE = "calls"

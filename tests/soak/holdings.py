@@ -9,9 +9,8 @@ from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-from support import PLATFORMS
-
 from rmw_manycore_py.native._transport import Platform
+from support.processes.platforms import PLATFORMS
 
 BLOCK_BYTES = 512  # of st_blocks, see stat(2)
 

@@ -20,16 +20,18 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from peers import PeerServers
-from processes import has_receive_threads, kill, processes_of, receive_threads_of
-from running_time import RunningTime
-from steady_load import Load
-from support import Program, environment, leftovers, peer_command, unique_platform, wait_until
-
 from rmw_manycore_py.native._transport import Platform
 from soak.actors import ACTORS, RENEW, breed_actors, publish_bursts
 from soak.growth import Record, grown
 from soak.holdings import Holdings, look
+from support import wait_until
+from support.nodes.steady_load import Load
+from support.peers.client import PeerServers
+from support.processes.commands import peer_command
+from support.processes.inspection import has_receive_threads, kill, processes_of, receive_threads_of
+from support.processes.platforms import environment, leftovers, unique_platform
+from support.processes.program import Program
+from support.processes.running_time import RunningTime
 
 CLUSTERS = 2
 CROWD = 8  # nodes at a time besides the lasting ones

@@ -9,9 +9,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from graves import Graves
-from running_time import RunningTime
-from steady_load import Load
+
+from support.nodes.graves import Graves
+from support.nodes.steady_load import Load
+from support.processes.running_time import RunningTime
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -9,15 +9,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-import ros2_packages
-from comparing import FEW, MANY, compared
 
-TESTS = Path(__file__).parents[1]
+from support.comparisons.comparing import FEW, MANY, compared
+from support.installs import ros2_packages
 
 
 @pytest.mark.parametrize("kind", ["clouds", "definitions", "recordings"])
 def test_made_files_are_read_as_by_their_real_reader(kind: str, tmp_path: Path) -> None:
-    print(compared(TESTS / f"{kind}_compared.py", tmp_path, range(FEW, MANY)))
+    print(compared(kind, tmp_path, range(FEW, MANY)))
 
 
 @pytest.mark.skipif(not ros2_packages.are_available(), reason=ros2_packages.REASON)
@@ -26,4 +25,4 @@ def test_made_launch_files_have_the_values_that_launch_gives(
 ) -> None:
     for name, value in ros2_packages.environment(tmp_path / "packages").items():
         monkeypatch.setenv(name, value)
-    print(compared(TESTS / "launch_compared.py", tmp_path, range(FEW, MANY)))
+    print(compared("launch_files", tmp_path, range(FEW, MANY)))

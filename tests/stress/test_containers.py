@@ -7,8 +7,10 @@ docs/model/registry_lock.pml covers each order of steps; here the real kernel an
 from __future__ import annotations
 
 import pytest
-from containers import bring_up
-from support import IS_MANYCORE, KILLS, TIMEOUT_S, example_command, peer_command, wait_until
+
+from support import IS_MANYCORE, KILLS, TIMEOUT_S, wait_until
+from support.nodes.containers import bring_up
+from support.processes.commands import example_command, peer_command
 
 CONTAINERS = 6
 

@@ -7,8 +7,11 @@ import os
 import time
 
 import pytest
-from load import crowd, join_at_once
-from processes import (
+
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
+from support.nodes.load import crowd, join_at_once
+from support.processes.commands import example_command, peer_command
+from support.processes.inspection import (
     cpu_time_s,
     has_receive_threads,
     is_asleep,
@@ -16,7 +19,7 @@ from processes import (
     kill_all,
     processes_of,
 )
-from support import IS_MANYCORE, TIMEOUT_S, example_command, leftovers, peer_command, wait_until
+from support.processes.platforms import leftovers
 
 SIZE = int(os.environ.get("MANYCORE_TEST_CROWD", "100"))
 IDLE_S = 3.0  # how long the idle crowd is measured

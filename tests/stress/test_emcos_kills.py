@@ -11,11 +11,12 @@ import threading
 from pathlib import Path
 
 import pytest
-from emcos_ends import OPEN, OTHER, run, use
-from processes import kill
-from support import KILLS, TIMEOUT_S, peer_command
 
 from rmw_manycore_py.emcos import PeerGoneError
+from support import KILLS, TIMEOUT_S
+from support.nodes.emcos_ends import OPEN, OTHER, run, use
+from support.processes.commands import peer_command
+from support.processes.inspection import kill
 
 pytestmark = pytest.mark.stress
 

@@ -11,8 +11,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from building import interface
+
 from support import IS_MANYCORE
+from support.installs.building import interface
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore")
 

@@ -11,17 +11,13 @@ import random
 import time
 
 import pytest
-from load import breed
-from processes import kill, processes_of, receive_threads_of
-from steady_load import RECOVERY_S
-from support import (
-    IS_MANYCORE,
-    KILLS,
-    example_command,
-    leftovers,
-    peer_command,
-    wait_until,
-)
+
+from support import IS_MANYCORE, KILLS, wait_until
+from support.nodes.load import breed
+from support.nodes.steady_load import RECOVERY_S
+from support.processes.commands import example_command, peer_command
+from support.processes.inspection import kill, processes_of, receive_threads_of
+from support.processes.platforms import leftovers
 
 LONGEST_LIFE_S = 0.2  # lifetime of a victim: joining takes some milliseconds, and may be hit, too
 JOINING_S = 0.03  # about the time from the fork to the first message

@@ -14,12 +14,14 @@ import sys
 from pathlib import Path
 
 import pytest
-from load import TOPIC, fork
-from memory_cgroup import NoMemoryCgroupError, memory_cgroup
-from payload import make_message
-from ros_support import announce, peer_node
 from std_msgs.msg import UInt8MultiArray
-from support import IS_MANYCORE, KILLS, peer_command, wait_until
+
+from support import IS_MANYCORE, KILLS, wait_until
+from support.nodes.load import TOPIC, fork
+from support.nodes.payload import make_message
+from support.nodes.ros import announce, peer_node
+from support.processes.commands import peer_command
+from support.processes.memory_cgroup import NoMemoryCgroupError, memory_cgroup
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="about the memory of rmw_manycore")
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from mutated_files import read_mutated
+from support.comparisons.mutated_files import read_mutated
 
 FILES = int(os.environ.get("MANYCORE_TEST_MUTATED_FILES", "100000"))
 

@@ -15,10 +15,12 @@ import rclpy
 from rcl_interfaces.msg import Parameter, ParameterDescriptor, SetParametersResult
 from rcl_interfaces.srv import DescribeParameters, ListParameters, SetParameters
 from rclpy.serialization import serialize_message
-from ros_support import announce, peer_node, spin_until
 from std_srvs.srv import SetBool
-from support import IS_MANYCORE, TIMEOUT_S, peer_command, wait_until
 from test_msgs.srv import Arrays, BasicTypes, Empty
+
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
+from support.nodes.ros import announce, peer_node, spin_until
+from support.processes.commands import peer_command
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="sends with the transport's own binding")
 

@@ -12,8 +12,10 @@ import signal
 from collections.abc import Iterator
 
 import pytest
-from load import SMALL_DSM_BYTES, TOPIC, check_until_killed, publish_without_rest
-from support import IS_MANYCORE, KILLS, peer_command
+
+from support import IS_MANYCORE, KILLS
+from support.nodes.load import SMALL_DSM_BYTES, TOPIC, check_until_killed, publish_without_rest
+from support.processes.commands import peer_command
 
 ALL_CLUSTERS = 0b11
 

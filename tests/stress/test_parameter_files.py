@@ -10,15 +10,17 @@ import ast
 from pathlib import Path
 
 import pytest
-from comparing import FEW, MANY
-from parameter_files import (
+
+from support import IS_MANYCORE, TIMEOUT_S
+from support.comparisons.comparing import FEW, MANY
+from support.comparisons.parameter_files import (
     Generator,
     print_comparison,
     print_overrides,
     read_here,
     shown,
 )
-from support import IS_MANYCORE, TIMEOUT_S, peer_command
+from support.processes.commands import peer_command
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="manycore run is about rmw_manycore")
 

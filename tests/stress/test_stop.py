@@ -15,11 +15,13 @@ import time
 from statistics import median
 from typing import NamedTuple
 
-from payload import make_message, read_message
-from processes import is_stopped
-from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import UInt8MultiArray
-from support import peer_command, wait_until
+
+from support import wait_until
+from support.nodes.payload import make_message, read_message
+from support.nodes.ros import announce, peer_node, spin_until
+from support.processes.commands import peer_command
+from support.processes.inspection import is_stopped
 
 MESSAGES = 2000
 SIZE_BYTES = 20_000

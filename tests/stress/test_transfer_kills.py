@@ -11,11 +11,14 @@ import random
 import time
 
 import pytest
-from load import TOPIC, breed
-from processes import kill, receive_threads_of
-from steady_load import Load
-from support import IS_MANYCORE, KILLS, Program, peer_command, wait_until
-from transferred import DSM_BYTES, KINDS, configure
+
+from support import IS_MANYCORE, KILLS, wait_until
+from support.nodes.load import TOPIC, breed
+from support.nodes.steady_load import Load
+from support.nodes.transferred import DSM_BYTES, KINDS, configure
+from support.processes.commands import peer_command
+from support.processes.inspection import kill, receive_threads_of
+from support.processes.program import Program
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="transfers are rmw_manycore's")
 

@@ -15,10 +15,10 @@ from pathlib import Path
 
 import click
 import pytest
-from advice import PROGRAMS, advised, messages
-from doc_commands import parse
 
 from rmw_manycore_py.cli.main import VERBS
+from support.sources.advice import PROGRAMS, advised, messages
+from support.sources.doc_commands import parse
 
 pytestmark = pytest.mark.unit
 

@@ -7,9 +7,9 @@ import json
 from pathlib import Path
 
 import pytest
-from python_prefix import Prefix
 
 import rmw_manycore_interfaces
+from support.installs.python_prefix import Prefix
 
 pytestmark = pytest.mark.unit
 

@@ -8,16 +8,22 @@ from pathlib import Path
 
 import click
 import pytest
-from doc_commands import ROOT, manycore_calls, parse
+
+from support import REPOSITORY
+from support.sources.doc_commands import manycore_calls, parse
 
 pytestmark = pytest.mark.unit
 
 TARGET = re.compile(r"^([a-z-]+):", re.MULTILINE)
 CALL_OF_MAKE = re.compile(r"(?:^|`)make (?!-)([\w./-]+)", re.MULTILINE)
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
+PAGES = [
+    REPOSITORY / "README.md",
+    REPOSITORY / "CONTRIBUTING.md",
+    *sorted(REPOSITORY.glob("docs/**/*.md")),
+]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(REPOSITORY)))
 def test_calls_in_the_documentation_parse(page: Path) -> None:
     wrong = []
     for arguments in manycore_calls(page):
@@ -28,9 +34,9 @@ def test_calls_in_the_documentation_parse(page: Path) -> None:
     assert wrong == []
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(REPOSITORY)))
 def test_targets_of_make_exist(page: Path) -> None:
-    targets = TARGET.findall((ROOT / "Makefile").read_text())
+    targets = TARGET.findall((REPOSITORY / "Makefile").read_text())
     assert set(CALL_OF_MAKE.findall(page.read_text())) <= {*targets, ".venv/tests"}
 
 

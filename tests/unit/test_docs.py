@@ -13,7 +13,8 @@ from typing import Any
 
 import pytest
 import yaml
-from source_texts import texts
+
+from support.sources.texts import texts
 
 pytestmark = pytest.mark.unit
 

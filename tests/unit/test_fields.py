@@ -12,13 +12,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support import TIMEOUT_S
 
 import rmw_manycore_fields as fields
+from support import TESTS, TIMEOUT_S
 
 pytestmark = pytest.mark.unit
 
-TESTS = Path(__file__).parents[1]
 IS_FAST = "'_rmw_manycore_fields.Array' in str(type(m.array.array))"
 SHOW = f"import sensor_msgs.msg._image as m; print({IS_FAST})"
 
@@ -28,6 +27,7 @@ def run(*arguments: str, **variables: str) -> str:
     environment = {name: value for name, value in os.environ.items() if name not in names}
     done = subprocess.run(
         [sys.executable, *arguments],
+        cwd=TESTS,
         env={**environment, **variables},
         stdout=subprocess.PIPE,
         text=True,
@@ -39,7 +39,7 @@ def run(*arguments: str, **variables: str) -> str:
 
 @pytest.mark.parametrize("options", [(), ("-O",)])
 def test_every_field_takes_every_value_as_generated(options: tuple[str, ...]) -> None:
-    report = json.loads(run(*options, str(TESTS / "fields_compared.py"), PYTHONPATH=str(TESTS)))
+    report = json.loads(run(*options, "-m", "support.comparisons.fields"))
     assert report["differences"] == []
     assert report["fast_fields"] > 100
     assert report["comparisons"] > 40_000

@@ -9,10 +9,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from python_prefix import SHOW, Prefix
-from support import TIMEOUT_S
 
 import rmw_manycore_hook as hook
+from support import TIMEOUT_S
+from support.installs.python_prefix import SHOW, Prefix
 
 pytestmark = pytest.mark.unit
 

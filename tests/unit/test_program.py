@@ -7,9 +7,9 @@ import signal
 from pathlib import Path
 
 import pytest
-from python_prefix import SHOW, Prefix
 
 from rmw_manycore_program import own_program
+from support.installs.python_prefix import SHOW, Prefix
 
 pytestmark = pytest.mark.unit
 

@@ -7,7 +7,15 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
-from import_graph import ROOT_PACKAGE, between_rooms, cycle, imports_of, modules_in, rooms_of
+
+from support.sources.import_graph import (
+    ROOT_PACKAGE,
+    between_rooms,
+    cycle,
+    imports_of,
+    modules_in,
+    rooms_of,
+)
 
 pytestmark = pytest.mark.unit
 

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from support import MAPFILES
 
 from rmw_manycore_py.cli.main import cli
 from rmw_manycore_py.create.figure import FILE, PAPERS_REDUCTION, by_hand, dot_of
+from support import MAPFILES
 
 pytestmark = pytest.mark.unit
 

@@ -6,13 +6,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from comparing import FEW, compared
+
+from support.comparisons.comparing import FEW, compared
 
 pytestmark = pytest.mark.unit
 
-PROGRAM = Path(__file__).parents[2] / "definitions_compared.py"
-
 
 def test_made_definitions_are_read_as_by_rosidl(tmp_path: Path) -> None:
-    counted = compared(PROGRAM, tmp_path, range(FEW))
+    counted = compared("definitions", tmp_path, range(FEW))
     assert min(counted["accepted"], counted["refused"]) > FEW / 4, counted

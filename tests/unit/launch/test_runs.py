@@ -13,7 +13,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from advice import quoted, run_quoted
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.runs import log_file
@@ -27,6 +26,7 @@ from rmw_manycore_py.launch.runs.directory import (
 from rmw_manycore_py.launch.runs.lines import MAX_LINE_BYTES, LineBuffer, encoded
 from rmw_manycore_py.launch.runs.log_file import LogFile, log_path, share_of
 from rmw_manycore_py.launch.runs.log_reader import NodeLog, in_order
+from support.sources.advice import quoted, run_quoted
 
 pytestmark = pytest.mark.unit
 

@@ -6,9 +6,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from support import MAPFILES
 
 from rmw_manycore_py.mapfile.installed import description, find_mapfile, installed_mapfiles
+from support import MAPFILES
 
 pytestmark = pytest.mark.unit
 

@@ -6,9 +6,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from mutated_files import complaint, read_mutated
 
 from rmw_manycore_py.errors import MapfileError, Problem
+from support.comparisons.mutated_files import complaint, read_mutated
 
 pytestmark = pytest.mark.unit
 

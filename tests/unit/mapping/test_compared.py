@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
-from made_traces import example
 
 from rmw_manycore_py.cli.main import cli
 from rmw_manycore_py.trace.events import Trace
 from rmw_manycore_py.trace.files import save
+from support.samples.traces import example
 
 pytestmark = pytest.mark.unit
 

@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
-from made_traces import INCARNATION, US, event, example, publish
 
 from rmw_manycore_py.cli.main import cli
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
@@ -32,6 +31,7 @@ from rmw_manycore_py.trace.events import (
     endpoint_id,
 )
 from rmw_manycore_py.trace.files import save
+from support.samples.traces import INCARNATION, US, event, example, publish
 
 pytestmark = pytest.mark.unit
 

@@ -6,10 +6,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from recordings import NS_PER_S, START_NS, write_texts
 
 from rmw_manycore_py.cli.topic.gap_notices import gap_notices
 from rmw_manycore_py.recording.recording import Recording
+from support.samples.recordings import NS_PER_S, START_NS, write_texts
 
 pytestmark = [pytest.mark.unit, pytest.mark.needs("mcap")]
 

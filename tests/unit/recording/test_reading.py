@@ -9,11 +9,8 @@ from typing import Any
 
 import pytest
 import yaml
-from advice import run_quoted
-from bag_support import Bag
 from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.writer import CompressionType, IndexType, Writer
-from recordings import START_NS, STRING, string_row, text_in, text_message, write_texts
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.native._transport import Qos
@@ -21,6 +18,16 @@ from rmw_manycore_py.recording.metadata import write_metadata
 from rmw_manycore_py.recording.output import Output
 from rmw_manycore_py.recording.recording import Recording
 from rmw_manycore_py.recording.target import Target
+from support.samples.bags import Bag
+from support.samples.recordings import (
+    START_NS,
+    STRING,
+    string_row,
+    text_in,
+    text_message,
+    write_texts,
+)
+from support.sources.advice import run_quoted
 
 pytestmark = [pytest.mark.unit, pytest.mark.needs("rosbags", "mcap")]
 

@@ -6,15 +6,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from comparing import FEW, compared
+
+from support.comparisons.comparing import FEW, compared
 
 pytestmark = [pytest.mark.unit, pytest.mark.needs("mcap")]
 
-PROGRAM = Path(__file__).parents[2] / "recordings_compared.py"
-
 
 def test_made_files_are_read_as_by_mcap(tmp_path: Path) -> None:
-    counted = compared(PROGRAM, tmp_path, range(FEW))
+    counted = compared("recordings", tmp_path, range(FEW))
     assert sum(counted.values()) == FEW, counted
     assert sum(number for end, number in counted.items() if end.endswith("cut")) > FEW / 10, counted
     assert counted.get("damage misread, whole", 0) < FEW / 50, counted

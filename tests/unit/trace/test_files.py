@@ -8,13 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from made_traces import (
-    CAMERA,
-    INCARNATION,
-    US,
-    evaluated,
-    example,
-)
 
 from rmw_manycore_py.errors import FileError, ManycoreError
 from rmw_manycore_py.trace.comparison import compare
@@ -26,6 +19,7 @@ from rmw_manycore_py.trace.files import SUFFIXES, load, save
 from rmw_manycore_py.trace.flows import flows_of
 from rmw_manycore_py.trace.latency import ChainLatency, Part
 from rmw_manycore_py.trace.slices import What, name_of, slices_of
+from support.samples.traces import CAMERA, INCARNATION, US, evaluated, example
 
 pytestmark = pytest.mark.unit
 

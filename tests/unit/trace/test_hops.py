@@ -10,17 +10,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from made_traces import (
-    CAMERA,
-    INCARNATION,
-    SINK,
-    US,
-    evaluated,
-    event,
-    example,
-    process,
-    publish,
-)
 
 from rmw_manycore_py.cli.main import cli
 from rmw_manycore_py.trace.counters import counters_of
@@ -36,6 +25,17 @@ from rmw_manycore_py.trace.events import (
 from rmw_manycore_py.trace.files import save
 from rmw_manycore_py.trace.flows import flows_of
 from rmw_manycore_py.trace.slices import What, slices_of
+from support.samples.traces import (
+    CAMERA,
+    INCARNATION,
+    SINK,
+    US,
+    evaluated,
+    event,
+    example,
+    process,
+    publish,
+)
 
 pytestmark = pytest.mark.unit
 

@@ -10,11 +10,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from support import TIMEOUT_S
 
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import check
 from rmw_manycore_py.mapfile.launch_file import LaunchFile, Respawn, Start, read_launch_file
+from support import TIMEOUT_S
 
 pytestmark = pytest.mark.unit
 

@@ -6,19 +6,19 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from comparing import FEW, compared
-from launch_values import by_us, write
-from made_launch_values import node, tag, xml
+
+from support.comparisons.comparing import FEW, compared
+from support.comparisons.launch_values import by_us, write
+from support.generated.launch_files import node, tag, xml
 
 pytestmark = pytest.mark.unit
 
-PROGRAM = Path(__file__).parents[3] / "launch_compared.py"
 SIZE = FEW // 5  # of a part: several processes share the work
 
 
 @pytest.mark.parametrize("first", range(0, FEW, SIZE))
 def test_values_are_those_that_launch_gives(first: int, tmp_path: Path) -> None:
-    counted = compared(PROGRAM, tmp_path, range(first, first + SIZE))
+    counted = compared("launch_files", tmp_path, range(first, first + SIZE))
     assert min(counted["read"], counted["refused"]) > SIZE / 4, counted
 
 

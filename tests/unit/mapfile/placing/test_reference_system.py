@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import pytest
-import reference_system as described
-from support import MAPFILES
 
 from rmw_manycore_py.create.figure import PAPERS_REDUCTION, by_hand, dot_of
 from rmw_manycore_py.mapfile import PlacedNode, check
+from support import MAPFILES
+from support.samples import reference_system as described
 
 pytestmark = pytest.mark.unit
 

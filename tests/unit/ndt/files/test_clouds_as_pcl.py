@@ -6,15 +6,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from comparing import FEW, compared
+
+from support.comparisons.comparing import FEW, compared
 
 pytestmark = pytest.mark.unit
 
-PROGRAM = Path(__file__).parents[3] / "clouds_compared.py"
-
 
 def test_made_clouds_are_read_as_by_their_real_readers(tmp_path: Path) -> None:
-    counted = compared(PROGRAM, tmp_path, range(FEW))
+    counted = compared("clouds", tmp_path, range(FEW))
     assert sum(counted.values()) == FEW
     assert counted["PCD read, PLY read"] > FEW / 4, counted
     assert counted["PCD refused, PLY refused"] > FEW / 50, counted

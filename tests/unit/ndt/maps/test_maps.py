@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from ndt_support import write_boastful_npz
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
@@ -19,6 +18,7 @@ from rmw_manycore_py.ndt.maps.map_file import read_points, write_points
 from rmw_manycore_py.ndt.maps.map_tiles import METADATA, TileFiles, open_map, write_tiles
 from rmw_manycore_py.ndt.recordings.recording import Recording, load_recording, save_recording
 from rmw_manycore_py.ndt.recordings.scan_folder import read_scan
+from support.nodes.scan_matching import write_boastful_npz
 
 pytestmark = pytest.mark.unit
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ndt_world import errors, pose, scan_at, street
 
 from rmw_manycore_py import ManycoreError, ndt
+from support.samples.ndt_world import errors, pose, scan_at, street
 
 pytestmark = pytest.mark.unit
 

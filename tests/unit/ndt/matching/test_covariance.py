@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ndt_world import Points, pose, scan_at, street
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.matching.options import PoseCovariance
+from support.samples.ndt_world import Points, pose, scan_at, street
 
 pytestmark = pytest.mark.unit
 

@@ -7,12 +7,12 @@ import gc
 
 import numpy as np
 import pytest
-from ndt_world import pose, scan_at, street
 
 from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.ndt import MatcherOptions
 from rmw_manycore_py.ndt.geometry.arrays import map_points, scan_points
 from rmw_manycore_py.ndt.matching.kernel_options import coarse_options, map_options, match_options
+from support.samples.ndt_world import pose, scan_at, street
 
 pytestmark = pytest.mark.unit
 

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ndt_world import Points, pose, scan_at, street
 
 from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.native.enums import Search, VoxelCovariance
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry.arrays import scan_points
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
+from support.samples.ndt_world import Points, pose, scan_at, street
 
 pytestmark = pytest.mark.unit
 

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ndt_world import errors, pose, scan_at, street
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry.arrays import Pose
 from rmw_manycore_py.ndt.matching.second_look import CONVINCING_SHARE, best_of_second_look
+from support.samples.ndt_world import errors, pose, scan_at, street
 
 pytestmark = pytest.mark.unit
 

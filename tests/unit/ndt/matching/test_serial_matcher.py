@@ -8,11 +8,11 @@ from typing import Any, get_args
 
 import numpy as np
 import pytest
-from ndt_world import errors, pose, scan_at, street
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.native.enums import Search, StepRule, VoxelCovariance
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
+from support.samples.ndt_world import errors, pose, scan_at, street
 
 pytestmark = pytest.mark.unit
 

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bag_support import T0_S, Bag
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, inverse
 from rmw_manycore_py.ndt.recordings.opening import open_recording
+from support.samples.bags import T0_S, Bag
 
 pytestmark = pytest.mark.unit
 

@@ -9,12 +9,12 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from ndt_world import errors, pose, scan_at, street
-from support import wait_until
 
 from rmw_manycore_py.ndt import MatcherOptions, VoxelMap
 from rmw_manycore_py.ndt.trust.judge import PoseJudge
 from rmw_manycore_py.ndt.trust.recovery import Recovery, Step
+from support import wait_until
+from support.samples.ndt_world import errors, pose, scan_at, street
 
 pytestmark = pytest.mark.unit
 

@@ -7,7 +7,6 @@ import struct
 from pathlib import Path
 
 import pytest
-from made_traces import example
 
 from rmw_manycore_py.bench.relations import measured_relations
 from rmw_manycore_py.bench.summary import Result
@@ -17,6 +16,7 @@ from rmw_manycore_py.papers.roslite.bench.elf import Sizes, sizes_of
 from rmw_manycore_py.papers.roslite.bench.figures import draw
 from rmw_manycore_py.papers.roslite.bench.sending import sending_us
 from rmw_manycore_py.papers.roslite.vehicle.drive_log import DriveFigures, DriveLog
+from support.samples.traces import example
 
 pytestmark = pytest.mark.unit
 

@@ -15,7 +15,6 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
-from support import MAPFILES
 
 from rmw_manycore_py.cli.main import cli
 from rmw_manycore_py.errors import MapfileError
@@ -28,6 +27,7 @@ from rmw_manycore_py.papers.roslite.variants import (
     with_transfer,
     write,
 )
+from support import MAPFILES
 
 pytestmark = pytest.mark.unit
 

@@ -9,10 +9,10 @@ import subprocess
 from subprocess import PIPE
 
 import pytest
-from support import wait_until
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.papers.roslite2.laptop.network_namespace import entering, packets_received
+from support import wait_until
 
 pytestmark = pytest.mark.unit
 

@@ -15,9 +15,9 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
-from support import MAPFILES
 
 from rmw_manycore_py.cli.main import cli
+from support import MAPFILES
 
 pytestmark = pytest.mark.unit
 

@@ -6,10 +6,19 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from made_traces import CAMERA, INCARNATION, NAMES, evaluated, example, process, publish, take
 
 from rmw_manycore_py.platform.monitor.latency import topic_latencies
 from rmw_manycore_py.trace.events import Endpoint, Trace, endpoint_id
+from support.samples.traces import (
+    CAMERA,
+    INCARNATION,
+    NAMES,
+    evaluated,
+    example,
+    process,
+    publish,
+    take,
+)
 
 pytestmark = pytest.mark.unit
 
