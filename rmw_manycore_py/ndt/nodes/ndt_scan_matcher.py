@@ -32,10 +32,7 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.matching_thread import MatchingThrea
 from rmw_manycore_py.ndt.nodes.scan_matcher.matching_trace import MatchingTrace
 from rmw_manycore_py.ndt.nodes.scan_matcher.outputs import MatcherOutputs
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
-from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import (
-    Interpolated,
-    NoPoseError,
-)
+from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import Interpolated, NoPoseError
 from rmw_manycore_py.ndt.nodes.scan_matcher.pose_inputs import PoseInputs
 from rmw_manycore_py.ndt.nodes.scan_matcher.real_time import schedule_in_real_time
 from rmw_manycore_py.ndt.nodes.scan_matcher.rejected import Rejected
@@ -47,6 +44,7 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.tracking import (
     AutowareTracking,
     RobustTracking,
     ScanAt,
+    Tracked,
     Tracking,
 )
 from rmw_manycore_py.ndt.nodes.support.clock import clock_s
@@ -197,46 +195,31 @@ class NdtScanMatcher(Node):
         stamp, stamp_s = message.header.stamp, seconds(message.header.stamp)
         report.value("topic_time_stamp", stamp_s)
         scan = self._scan_points.of(message, clock_s(self), report)
+        self._scan = scan.points
         stages.end("decode")
-        self._scan = points = scan.points
-        report.value("is_activated", self._is_activated)
-        if not self._is_activated:
-            raise Rejected("Node is not activated: call trigger_node_srv")
+        self._require_activation(report)
         guess = self._guess_at(stamp_s, report)
         self._scan = points = self._deskewed(scan, stamp_s, guess, report)
         stages.end("deskew")
         self._take_new_map()
-        report.value("is_set_map_points", self._map.is_set)
-        if not self._map.is_set:
-            raise Rejected(f"there is no map yet: {self._map.what_is_missing()}")
-        if self._map.is_leaving(float(guess.T[0, 3]), float(guess.T[1, 3])):
-            report.note("Lidar has gone out of the map range")
+        self._require_map(guess, report)
         self._memory.make_room_for_scan(len(points))
         stages.end("map")
-        regularization = self._poses.regularization_at(stamp_s, guess.T, report)
-        tracked = self._tracking.track(ScanAt(stamp_s, points, guess.T, regularization), report)
+        tracked = self._tracked(stamp_s, points, guess, report)
         stages.end("match")
-        alignment = tracked.alignment
-        if not np.isfinite(alignment.T_map_sensor).all():
-            raise Rejected(f"the alignment has no finite result: {alignment.why}")
-        report_steps(alignment, report)
-        distance_m = poses.distance_m(guess.T, alignment.T_map_sensor)
-        report.value("distance_initial_to_result", distance_m)
-        if distance_m > self._p.result_distance_m:
-            report.warn(f"distance_initial_to_result is too large ({distance_m:.2f} m)")
+        self._report_alignment(tracked.alignment, guess, report)
         if tracked.is_reliable:
-            self._outputs.accepted_pose(stamp, alignment.T_map_sensor, tracked.covariance)
-        exe_time_ms = stages.total_ms
-        report.value("execution_time", round(exe_time_ms, 3))
-        if exe_time_ms > self._p.critical_exe_time_ms:
-            report.warn(f"NDT exe time is too long (took {exe_time_ms:.1f} ms)")
-        self._outputs.number("exe_time_ms", stamp, exe_time_ms)
-        self._outputs.result(stamp, alignment, guess)
-        self._markers.alignment(stamp, alignment.path)
-        self._publish_clouds(stamp, points, alignment.T_map_sensor)
+            self._outputs.accepted_pose(stamp, tracked.alignment.T_map_sensor, tracked.covariance)
+        self._report_time(stamp, stages.total_ms, report)
+        self._publish_details(stamp, points, tracked.alignment, guess)
         stages.end("publish")
         stages.report(report)
         return tracked.is_reliable
+
+    def _require_activation(self, report: Diagnostics) -> None:
+        report.value("is_activated", self._is_activated)
+        if not self._is_activated:
+            raise Rejected("Node is not activated: call trigger_node_srv")
 
     def _guess_at(self, stamp_s: float, report: Diagnostics) -> Interpolated:
         try:
@@ -264,6 +247,44 @@ class NdtScanMatcher(Node):
             return scan.points
         T, duration_s = motion
         return deskewed(scan.points, scan.times_s / duration_s, T)
+
+    def _require_map(self, guess: Interpolated, report: Diagnostics) -> None:
+        report.value("is_set_map_points", self._map.is_set)
+        if not self._map.is_set:
+            raise Rejected(f"there is no map yet: {self._map.what_is_missing()}")
+        if self._map.is_leaving(float(guess.T[0, 3]), float(guess.T[1, 3])):
+            report.note("Lidar has gone out of the map range")
+
+    def _tracked(
+        self, stamp_s: float, points: Points, guess: Interpolated, report: Diagnostics
+    ) -> Tracked:
+        regularization = self._poses.regularization_at(stamp_s, guess.T, report)
+        tracked = self._tracking.track(ScanAt(stamp_s, points, guess.T, regularization), report)
+        if not np.isfinite(tracked.alignment.T_map_sensor).all():
+            raise Rejected(f"the alignment has no finite result: {tracked.alignment.why}")
+        return tracked
+
+    def _report_alignment(
+        self, alignment: Alignment, guess: Interpolated, report: Diagnostics
+    ) -> None:
+        report_steps(alignment, report)
+        distance_m = poses.distance_m(guess.T, alignment.T_map_sensor)
+        report.value("distance_initial_to_result", distance_m)
+        if distance_m > self._p.result_distance_m:
+            report.warn(f"distance_initial_to_result is too large ({distance_m:.2f} m)")
+
+    def _report_time(self, stamp: Any, exe_time_ms: float, report: Diagnostics) -> None:
+        report.value("execution_time", round(exe_time_ms, 3))
+        if exe_time_ms > self._p.critical_exe_time_ms:
+            report.warn(f"NDT exe time is too long (took {exe_time_ms:.1f} ms)")
+        self._outputs.number("exe_time_ms", stamp, exe_time_ms)
+
+    def _publish_details(
+        self, stamp: Any, points: Points, alignment: Alignment, guess: Interpolated
+    ) -> None:
+        self._outputs.result(stamp, alignment, guess)
+        self._markers.alignment(stamp, alignment.path)
+        self._publish_clouds(stamp, points, alignment.T_map_sensor)
 
     def _publish_clouds(self, stamp: Any, points: Points, T_map_base: Matrix) -> None:
         self._outputs.cloud("points_aligned", stamp, points, T_map_base)
