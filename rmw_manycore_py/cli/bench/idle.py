@@ -10,14 +10,13 @@ import click
 from rmw_manycore_py.bench import idle
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
+from rmw_manycore_py.cli.common.options import number_option
 
 DEFAULT_NODES = 100
 
 
 @click.command("idle")
-@click.option(
-    "--nodes", default=DEFAULT_NODES, show_default=True, type=click.IntRange(1), help="Idle nodes."
-)
+@number_option("--nodes", within=(1, None), default=DEFAULT_NODES, help="Idle nodes.")
 @bench_options
 def command(nodes: int, **options: Any) -> None:
     """Measure CPU time and wake-ups of idle nodes."""

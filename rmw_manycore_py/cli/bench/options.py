@@ -8,6 +8,8 @@ from pathlib import Path
 
 import click
 
+from rmw_manycore_py.cli.common.options import number_option
+
 DEFAULT_ROUNDS = 5
 
 Body = Callable[..., None]
@@ -26,11 +28,10 @@ def bench_options(body: Body) -> Body:
         click.option(
             "--quick", is_flag=True, help="Run one short round, to check that everything works."
         ),
-        click.option(
+        number_option(
             "--rounds",
+            within=(1, None),
             default=DEFAULT_ROUNDS,
-            show_default=True,
-            type=click.IntRange(1),
             help="Times to measure everything.",
         ),
         click.option(

@@ -12,7 +12,7 @@ from rich.console import Console
 from rmw_manycore_py.bench.pairs import MIN_PAIRS, compare
 from rmw_manycore_py.bench.question import PAYLOADS
 from rmw_manycore_py.bench.session import usable_cpus
-from rmw_manycore_py.cli.common.options import examples, json_option
+from rmw_manycore_py.cli.common.options import examples, json_option, number_option
 from rmw_manycore_py.cli.common.printing import echo, print_json
 
 
@@ -24,9 +24,7 @@ from rmw_manycore_py.cli.common.printing import echo, print_json
     ),
 )
 @click.argument("other", type=click.Path(file_okay=False, path_type=Path))
-@click.option(
-    "--pairs", default=30, show_default=True, type=click.IntRange(MIN_PAIRS), help="Pairs of runs."
-)
+@number_option("--pairs", within=(MIN_PAIRS, None), default=30, help="Pairs of runs.")
 @click.option(
     "--size",
     default="64 B",

@@ -10,7 +10,7 @@ import click
 
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
-from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.options import examples, number_option
 from rmw_manycore_py.papers.reference_system.bench.question import reference_question
 from rmw_manycore_py.papers.reference_system.bench.setups import MESSAGES, Wanted
 from rmw_manycore_py.papers.reference_system.bench.system import Nodes
@@ -37,19 +37,14 @@ _EXAMPLES = examples(
     show_default=True,
     help="Size of all messages.",
 )
-@click.option(
-    "--crunch-ms",
-    default=0.0,
-    show_default=True,
-    type=click.FloatRange(0, 1000),
-    help="CPU time that each callback burns.",
+@number_option(
+    "--crunch-ms", within=(0, 1000), default=0.0, help="CPU time that each callback burns."
 )
-@click.option(
+@number_option(
     "--duration",
     "duration_s",
+    within=(1, None),
     default=20.0,
-    show_default=True,
-    type=click.FloatRange(1),
     help="Seconds per contender and round.",
 )
 @bench_options

@@ -122,6 +122,26 @@ def named_node_options(command: Command) -> Command:
     )
 
 
+def graph_options(command: Command) -> Command:
+    """Add the options of verbs that show the graph; passes `as_json` and `platform`."""
+    return discovery_options(json_option(platform_option(command)))
+
+
+def listing_options(command: Command) -> Command:
+    """Add the options of verbs that list names; passes `count` and `hidden`, too."""
+    return count_option(hidden_option(graph_options(command)))
+
+
+def number_option(
+    *names: str, within: tuple[float, float | None], default: float, **more: Any
+) -> Callable[[Command], Command]:
+    """Return an option for a number within bounds; its help shows the default."""
+    number_range: Any = click.IntRange if isinstance(default, int) else click.FloatRange
+    return click.option(
+        *names, type=number_range(*within), default=default, show_default=True, **more
+    )
+
+
 def talking_options(command: Command) -> Command:
     """Add those options to a verb that spins a node; passes the argument `sim_time`."""
     return _without_discovery(

@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from rmw_manycore_py.cli.common.message_text import SHOWN_LENGTH, Shown
+from rmw_manycore_py.cli.common.options import number_option
 
 
 def shown_options(function: Callable[..., None]) -> Callable[..., None]:
@@ -21,12 +22,11 @@ def shown_options(function: Callable[..., None]) -> Callable[..., None]:
         "--json", "style", flag_value="json", help="Print one untruncated JSON object per line."
     )
     @click.option("-f", "--full-length", is_flag=True, help="Do not truncate strings and arrays.")
-    @click.option(
+    @number_option(
         "-l",
         "--truncate-length",
-        type=click.IntRange(0),
+        within=(0, None),
         default=SHOWN_LENGTH,
-        show_default=True,
         help="Length at which strings and arrays are truncated.",
     )
     @click.option(

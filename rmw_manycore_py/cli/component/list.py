@@ -5,12 +5,7 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common.options import (
-    discovery_options,
-    examples,
-    json_option,
-    platform_option,
-)
+from rmw_manycore_py.cli.common.options import examples, graph_options
 from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.component.containers import (
@@ -26,9 +21,7 @@ from rmw_manycore_py.cli.component.containers import (
 )
 @click.argument("container", required=False, shell_complete=complete_containers)
 @click.option("--containers-only", is_flag=True, help="List only the containers.")
-@discovery_options
-@json_option
-@platform_option
+@graph_options
 def command(container: str | None, containers_only: bool, as_json: bool, platform: str) -> None:
     """List containers and their components.
 

@@ -5,14 +5,7 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common.options import (
-    count_option,
-    discovery_options,
-    examples,
-    hidden_option,
-    json_option,
-    platform_option,
-)
+from rmw_manycore_py.cli.common.options import examples, listing_options
 from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 from rmw_manycore_py.cli.lifecycle.services import lifecycle_nodes
 from rmw_manycore_py.ros.names import is_hidden
@@ -20,11 +13,7 @@ from rmw_manycore_py.ros.names import is_hidden
 
 @click.command("nodes", epilog=examples("manycore lifecycle nodes"))
 @click.option("-a", "--all", "everything", is_flag=True, help="Same as --include-hidden.")
-@count_option
-@hidden_option
-@discovery_options
-@json_option
-@platform_option
+@listing_options
 def command(platform: str, count: bool, hidden: bool, everything: bool, as_json: bool) -> None:
     """List the lifecycle nodes."""
     found = lifecycle_nodes(platform)

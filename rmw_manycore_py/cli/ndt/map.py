@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.options import examples, number_option
 from rmw_manycore_py.cli.common.output_file import writing
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.ndt.recording_options import recording_options
@@ -34,19 +34,17 @@ from rmw_manycore_py.ndt.recordings.opening import open_recording
     type=click.Path(path_type=Path),
     help="A .pcd, .ply or .npz file; with --tile-size, a directory to create.",
 )
-@click.option(
+@number_option(
     "--every",
-    type=click.IntRange(1),
+    within=(1, None),
     default=1,
-    show_default=True,
     help="Use every Nth scan only, so that the others are new to the map.",
 )
-@click.option(
+@number_option(
     "--leaf",
     "leaf_m",
-    type=click.FloatRange(0.0),
+    within=(0.0, None),
     default=0.1,
-    show_default=True,
     help="Voxel size in metres, one point per voxel; 0 keeps all points.",
 )
 @click.option(

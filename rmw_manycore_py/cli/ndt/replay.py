@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.options import examples, number_option
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.cli.ndt.recording_options import recording_options
 from rmw_manycore_py.cli.ndt.replay_files import ReplayFiles, output_options
@@ -67,24 +67,19 @@ MAP_VOXEL_M = 0.2
     help="Source of the odometry and of the speed: the scans, matched to each other beforehand, or "
     "the reference poses.",
 )
-@click.option(
-    "--drift",
-    type=click.FloatRange(0.0, 1.0),
-    default=0.05,
-    show_default=True,
-    help="Odometry error, as a fraction of each motion.",
+@number_option(
+    "--drift", within=(0.0, 1.0), default=0.05, help="Odometry error, as a fraction of each motion."
 )
 @click.option(
     "--offset", "offset_m", default=0.5, show_default=True, help="Perturbation in metres."
 )
 @click.option("--turn", "turn_deg", default=3.0, show_default=True, help="Perturbation in degrees.")
 @click.option("--seed", default=1, show_default=True, help="Seed of drift and perturbation.")
-@click.option(
+@number_option(
     "--voxel",
     "voxel_m",
-    type=click.FloatRange(0.0),
+    within=(0.0, None),
     default=0.5,
-    show_default=True,
     help="Voxel size in metres to downsample scans to; 0 sends all points.",
 )
 @click.option("--scans", type=click.IntRange(1), help="Play only the first N scans.")
@@ -95,12 +90,11 @@ MAP_VOXEL_M = 0.2
     show_default=True,
     help="Deadline in ms; later answers count as late.",
 )
-@click.option(
+@number_option(
     "--timeout",
     "timeout_s",
-    type=click.FloatRange(1.0),
+    within=(1.0, None),
     default=30.0,
-    show_default=True,
     help="Seconds to wait for the matcher's first answer.",
 )
 @click.option(

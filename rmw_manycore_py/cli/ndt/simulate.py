@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 import numpy as np
 
-from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.options import examples, number_option
 from rmw_manycore_py.cli.common.output_file import writing
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.ndt.geometry.arrays import Points
@@ -42,69 +42,45 @@ MAP_VOXEL_M = 0.2
     ),
 )
 @click.argument("directory", type=click.Path(file_okay=False, path_type=Path))
-@click.option(
+@number_option(
     "--length",
     "length_m",
-    type=click.FloatRange(5.0, 5000.0),
+    within=(5.0, 5000.0),
     default=80.0,
-    show_default=True,
     help="Length of the drive in metres.",
 )
-@click.option(
-    "--speed",
-    "speed_m_s",
-    type=click.FloatRange(0.5, 40.0),
-    default=8.0,
-    show_default=True,
-    help="Speed in metres per second.",
+@number_option(
+    "--speed", "speed_m_s", within=(0.5, 40.0), default=8.0, help="Speed in metres per second."
 )
-@click.option(
-    "--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the street."
-)
-@click.option(
-    "--beams",
-    type=click.IntRange(1, 256),
-    default=Lidar.rings,
-    show_default=True,
-    help="Rings per scan.",
-)
-@click.option(
-    "--azimuths",
-    type=click.IntRange(36, 8192),
-    default=Lidar.azimuths,
-    show_default=True,
-    help="Points per ring.",
-)
-@click.option(
+@number_option("--seed", within=(0, None), default=1, help="Seed of the street.")
+@number_option("--beams", within=(1, 256), default=Lidar.rings, help="Rings per scan.")
+@number_option("--azimuths", within=(36, 8192), default=Lidar.azimuths, help="Points per ring.")
+@number_option(
     "--range",
     "range_m",
-    type=click.FloatRange(5.0, 300.0),
+    within=(5.0, 300.0),
     default=Lidar.range_m,
-    show_default=True,
     help="Range of the LiDAR in metres.",
 )
-@click.option(
+@number_option(
     "--noise",
     "noise_m",
-    type=click.FloatRange(0.0, 1.0),
+    within=(0.0, 1.0),
     default=Lidar.noise_m,
-    show_default=True,
     help="Standard deviation of the measured ranges, in metres.",
 )
-@click.option(
+@number_option(
     "--traffic",
     "cars",
-    type=click.IntRange(0, 20),
+    within=(0, 20),
     default=0,
-    show_default=True,
     help="Cars driving ahead and behind; not in the map.",
 )
-@click.option(
+@number_option(
     "--occlusion",
     "hidden_share",
-    type=click.FloatRange(0.0, 0.9),
+    within=(0.0, 0.9),
     default=Lidar.hidden_share,
-    show_default=True,
     help="Fraction of the field of view hidden by the vehicle, at the rear.",
 )
 @click.option(

@@ -8,22 +8,14 @@ import click
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.completion import complete_nodes
 from rmw_manycore_py.cli.common.node_names import existing_node
-from rmw_manycore_py.cli.common.options import (
-    discovery_options,
-    examples,
-    hidden_option,
-    json_option,
-    platform_option,
-)
+from rmw_manycore_py.cli.common.options import examples, graph_options, hidden_option
 from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 
 
 @click.command("info", epilog=examples("manycore node info /talker"))
 @click.argument("node", shell_complete=complete_nodes)
 @hidden_option
-@discovery_options
-@json_option
-@platform_option
+@graph_options
 def command(node: str, platform: str, as_json: bool, hidden: bool) -> None:
     """Show the topics, services and actions of NODE."""
     node = existing_node(platform, node)

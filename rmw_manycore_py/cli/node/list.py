@@ -6,14 +6,7 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common import view
-from rmw_manycore_py.cli.common.options import (
-    count_option,
-    discovery_options,
-    examples,
-    hidden_option,
-    json_option,
-    platform_option,
-)
+from rmw_manycore_py.cli.common.options import examples, listing_options
 from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 
 SHARED_NAME = (
@@ -24,11 +17,7 @@ SHARED_NAME = (
 
 @click.command("list", epilog=examples("manycore node list", "manycore node list --json"))
 @click.option("-a", "--all", "everything", is_flag=True, help="Same as --include-hidden.")
-@count_option
-@hidden_option
-@discovery_options
-@json_option
-@platform_option
+@listing_options
 def command(platform: str, as_json: bool, hidden: bool, everything: bool, count: bool) -> None:
     """List the nodes of a platform."""
     with view.open_platform(platform) as opened:

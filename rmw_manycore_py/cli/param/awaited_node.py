@@ -1,15 +1,16 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The option --timeout of verbs on parameters, whose node may still be starting."""
+"""Options of verbs on parameters, whose node may still be starting."""
 
 from __future__ import annotations
 
 import click
 
 from rmw_manycore_py.cli.common.node_names import existing_node
+from rmw_manycore_py.cli.common.options import Command, named_node_options, platform_option
 
 DEFAULT_TIMEOUT_S = 1.0
 
-timeout_option = click.option(
+_timeout_option = click.option(
     "--timeout",
     "timeout_s",
     metavar="S",
@@ -18,6 +19,11 @@ timeout_option = click.option(
     show_default=True,
     help="Wait up to S seconds for the node; forever if negative.",
 )
+
+
+def awaited_node_options(command: Command) -> Command:
+    """Add the options of verbs on a node's parameters; passes `timeout_s` and `platform`."""
+    return named_node_options(_timeout_option(platform_option(command)))
 
 
 def waited_for(platform: str, node: str, timeout_s: float) -> str:

@@ -10,15 +10,10 @@ import click
 
 from rmw_manycore_py.cli.common.completion import complete_nodes
 from rmw_manycore_py.cli.common.message_text import to_plain
-from rmw_manycore_py.cli.common.options import (
-    examples,
-    json_option,
-    named_node_options,
-    platform_option,
-)
+from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
-from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
+from rmw_manycore_py.cli.param.awaited_node import awaited_node_options, waited_for
 from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 
 
@@ -26,9 +21,7 @@ from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 @click.argument("node", shell_complete=complete_nodes)
 @click.argument("parameters", nargs=-1, required=True)
 @json_option
-@named_node_options
-@timeout_option
-@platform_option
+@awaited_node_options
 def command(
     node: str, parameters: tuple[str, ...], timeout_s: float, platform: str, as_json: bool
 ) -> None:

@@ -7,24 +7,17 @@ import click
 import yaml
 
 from rmw_manycore_py.cli.common.completion import complete_nodes
-from rmw_manycore_py.cli.common.options import (
-    examples,
-    json_option,
-    named_node_options,
-    platform_option,
-)
+from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
-from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
+from rmw_manycore_py.cli.param.awaited_node import awaited_node_options, waited_for
 from rmw_manycore_py.cli.param.parameters import Parameters, nested
 
 
 @click.command("dump", epilog=examples("manycore param dump /controller > controller.yaml"))
 @click.argument("node", shell_complete=complete_nodes)
 @json_option
-@named_node_options
-@timeout_option
-@platform_option
+@awaited_node_options
 def command(node: str, timeout_s: float, platform: str, as_json: bool) -> None:
     """Print all parameters of NODE as a parameter file."""
     name = waited_for(platform, node, timeout_s)

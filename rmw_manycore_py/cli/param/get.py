@@ -6,15 +6,10 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common.completion import complete_nodes
-from rmw_manycore_py.cli.common.options import (
-    examples,
-    json_option,
-    named_node_options,
-    platform_option,
-)
+from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
-from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
+from rmw_manycore_py.cli.param.awaited_node import awaited_node_options, waited_for
 from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 
 
@@ -23,9 +18,7 @@ from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 @click.argument("parameter")
 @click.option("--hide-type", is_flag=True, help="Print only the value.")
 @json_option
-@named_node_options
-@timeout_option
-@platform_option
+@awaited_node_options
 def command(
     node: str, parameter: str, hide_type: bool, timeout_s: float, platform: str, as_json: bool
 ) -> None:

@@ -10,13 +10,7 @@ from typing_extensions import override
 
 from rmw_manycore_py.cli.common.completion import complete_nodes
 from rmw_manycore_py.cli.common.node_names import existing_node, nodes_with_service
-from rmw_manycore_py.cli.common.options import (
-    discovery_options,
-    examples,
-    hidden_option,
-    json_option,
-    platform_option,
-)
+from rmw_manycore_py.cli.common.options import examples, graph_options, hidden_option
 from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
@@ -60,9 +54,7 @@ class _ManyPrefixes(click.Command):
 )
 @click.option("--param-type", "shows_types", is_flag=True, help="Show parameter types.")
 @hidden_option
-@discovery_options
-@json_option
-@platform_option
+@graph_options
 def command(
     node: str | None,
     prefixes: tuple[str, ...],

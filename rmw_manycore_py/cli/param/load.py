@@ -6,10 +6,10 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common.completion import complete_nodes
-from rmw_manycore_py.cli.common.options import examples, named_node_options, platform_option
+from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.tool_node import tool_node
-from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
+from rmw_manycore_py.cli.param.awaited_node import awaited_node_options, waited_for
 from rmw_manycore_py.cli.param.parameters import Parameters, parameters_of_file
 from rmw_manycore_py.errors import ManycoreError
 
@@ -20,9 +20,7 @@ from rmw_manycore_py.errors import ManycoreError
 @click.option(
     "--no-use-wildcard", is_flag=True, help="Skip sections for several nodes, such as /**."
 )
-@named_node_options
-@timeout_option
-@platform_option
+@awaited_node_options
 def command(node: str, file: str, no_use_wildcard: bool, timeout_s: float, platform: str) -> None:
     """Set the parameters of NODE from a parameter FILE."""
     name = waited_for(platform, node, timeout_s)

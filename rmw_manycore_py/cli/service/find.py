@@ -3,30 +3,8 @@
 
 from __future__ import annotations
 
-import click
-
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.completion import complete_service_types
-from rmw_manycore_py.cli.common.names import show_names
-from rmw_manycore_py.cli.common.options import (
-    count_option,
-    discovery_options,
-    examples,
-    hidden_option,
-    json_option,
-    platform_option,
-)
+from rmw_manycore_py.cli.common.finding import find_command
 
-
-@click.command("find", epilog=examples("manycore service find std_srvs/srv/SetBool"))
-@click.argument("type_name", metavar="TYPE", shell_complete=complete_service_types)
-@count_option
-@hidden_option
-@discovery_options
-@json_option
-@platform_option
-def command(type_name: str, platform: str, as_json: bool, hidden: bool, count: bool) -> None:
-    """List the services of TYPE."""
-    rows = view.services(view.endpoints_on(platform), hidden=hidden)
-    rows = [row for row in rows if type_name in row["types"]]
-    show_names(rows, as_json=as_json, count=count)
+command = find_command("service", "std_srvs/srv/SetBool", complete_service_types, view.services)

@@ -8,20 +8,13 @@ import click
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.completion import complete_services
 from rmw_manycore_py.cli.common.names import row_of
-from rmw_manycore_py.cli.common.options import (
-    discovery_options,
-    examples,
-    json_option,
-    platform_option,
-)
+from rmw_manycore_py.cli.common.options import examples, graph_options
 from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 
 
 @click.command("info", epilog=examples("manycore service info /switch_lamp"))
 @click.argument("service", shell_complete=complete_services)
-@discovery_options
-@json_option
-@platform_option
+@graph_options
 def command(service: str, platform: str, as_json: bool) -> None:
     """Show the number of servers and clients of SERVICE."""
     rows = view.services(view.endpoints_on(platform), hidden=True)

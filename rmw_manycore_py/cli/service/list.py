@@ -7,24 +7,12 @@ import click
 
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.names import show_names
-from rmw_manycore_py.cli.common.options import (
-    count_option,
-    discovery_options,
-    examples,
-    hidden_option,
-    json_option,
-    platform_option,
-    types_option,
-)
+from rmw_manycore_py.cli.common.options import examples, listing_options, types_option
 
 
 @click.command("list", epilog=examples("manycore service list -t", "manycore service list --json"))
 @types_option
-@count_option
-@hidden_option
-@discovery_options
-@json_option
-@platform_option
+@listing_options
 def command(platform: str, as_json: bool, show_types: bool, count: bool, hidden: bool) -> None:
     """List the services of a platform.
 

@@ -17,7 +17,7 @@ from rich.console import Console
 
 from rmw_manycore_py.cli.common.keyboard import single_keys
 from rmw_manycore_py.cli.common.looking import look_at
-from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.options import examples, number_option, platform_option
 from rmw_manycore_py.cli.common.view import require_platform
 from rmw_manycore_py.cli.top.interaction import Interaction
 from rmw_manycore_py.cli.top.rows import (
@@ -42,13 +42,8 @@ _PLAIN_WIDTH = 1000  # no line breaks in pipes and files
         "manycore top --count 1 --json",
     ),
 )
-@click.option(
-    "--period",
-    "period_s",
-    type=click.FloatRange(min=0.1),
-    default=1.0,
-    show_default=True,
-    help="Seconds between updates.",
+@number_option(
+    "--period", "period_s", within=(0.1, None), default=1.0, help="Seconds between updates."
 )
 @click.option("--count", type=click.IntRange(1), help="Exit after N updates.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per update.")

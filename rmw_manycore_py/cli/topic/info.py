@@ -8,12 +8,7 @@ import click
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.completion import complete_topics
 from rmw_manycore_py.cli.common.names import unknown
-from rmw_manycore_py.cli.common.options import (
-    discovery_options,
-    examples,
-    json_option,
-    platform_option,
-)
+from rmw_manycore_py.cli.common.options import examples, graph_options
 from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 from rmw_manycore_py.cli.common.rows import counters_row, endpoint_row
 from rmw_manycore_py.native._transport import EndpointInfo, Qos
@@ -25,9 +20,7 @@ from rmw_manycore_py.native._transport import EndpointInfo, Qos
 )
 @click.argument("topic", shell_complete=complete_topics)
 @click.option("-v", "--verbose", is_flag=True, help="Show each publisher and subscription.")
-@discovery_options
-@json_option
-@platform_option
+@graph_options
 def command(topic: str, platform: str, as_json: bool, verbose: bool) -> None:
     """Show the publishers and subscriptions of TOPIC."""
     on_platform = view.endpoints_on(platform)

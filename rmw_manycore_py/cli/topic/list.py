@@ -9,15 +9,7 @@ import click
 
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.names import show_names
-from rmw_manycore_py.cli.common.options import (
-    count_option,
-    discovery_options,
-    examples,
-    hidden_option,
-    json_option,
-    platform_option,
-    types_option,
-)
+from rmw_manycore_py.cli.common.options import examples, listing_options, types_option
 from rmw_manycore_py.cli.common.printing import counted, echo, escaped
 from rmw_manycore_py.cli.common.rows import Row
 
@@ -25,11 +17,7 @@ from rmw_manycore_py.cli.common.rows import Row
 @click.command("list", epilog=examples("manycore topic list -t", "manycore topic list --json"))
 @types_option
 @click.option("-v", "--verbose", is_flag=True, help="Show publishers and subscriptions.")
-@count_option
-@hidden_option
-@discovery_options
-@json_option
-@platform_option
+@listing_options
 def command(
     platform: str, as_json: bool, show_types: bool, verbose: bool, count: bool, hidden: bool
 ) -> None:

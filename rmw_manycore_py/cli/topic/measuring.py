@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from rmw_manycore_py.cli.common.completion import complete_topics, complete_types_of_topic
-from rmw_manycore_py.cli.common.options import platform_option, talking_options
+from rmw_manycore_py.cli.common.options import number_option, platform_option, talking_options
 from rmw_manycore_py.cli.common.printing import echo
 
 if TYPE_CHECKING:
@@ -32,12 +32,11 @@ def measuring_options(least: int, default: int, of: str) -> Callable[[Command], 
             click.option(
                 "--json", "as_json", is_flag=True, help="Print one JSON object per result."
             ),
-            click.option(
+            number_option(
                 "-w",
                 "--window",
-                type=click.IntRange(least),
+                within=(least, None),
                 default=default,
-                show_default=True,
                 help=f"Window size, in {of}.",
             ),
             click.argument(

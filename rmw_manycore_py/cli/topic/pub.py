@@ -15,7 +15,12 @@ from builtin_interfaces.msg import Time
 from rmw_manycore_py.cli.common.completion import complete_topics, complete_types_of_topic
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_values import message_of, parse_values, read_values
-from rmw_manycore_py.cli.common.options import examples, platform_option, talking_options
+from rmw_manycore_py.cli.common.options import (
+    examples,
+    number_option,
+    platform_option,
+    talking_options,
+)
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.common.values_argument import DEFAULTS, exclude, values_argument
@@ -60,14 +65,13 @@ KEEP_ALIVE_S = 0.1
 @click.option(
     "-t", "--times", type=click.IntRange(0), default=0, help="Publish N messages and exit."
 )
-@click.option(
+@number_option(
     "-p",
     "--print",
     "shown",
-    metavar="N",
-    type=click.IntRange(0),
+    within=(0, None),
     default=1,
-    show_default=True,
+    metavar="N",
     help="Print every Nth message.",
 )
 @click.option(
@@ -84,13 +88,12 @@ KEEP_ALIVE_S = 0.1
     type=click.FloatRange(min=0, min_open=True),
     help="Give up waiting after S seconds.",
 )
-@click.option(
+@number_option(
     "--keep-alive",
     "keep_alive_s",
-    metavar="S",
-    type=click.FloatRange(min=0),
+    within=(0, None),
     default=KEEP_ALIVE_S,
-    show_default=True,
+    metavar="S",
     help="Keep the publisher alive S seconds after the last message.",
 )
 @click.option("-n", "--node-name", metavar="NAME", help="Name of the publishing node.")

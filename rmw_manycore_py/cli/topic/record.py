@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.common.completion import complete_message_types, complete_topics
-from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.options import examples, number_option, platform_option
 from rmw_manycore_py.cli.topic.outside import leave_middleware
 from rmw_manycore_py.cli.topic.selection_options import (
     exclude_option,
@@ -74,22 +74,16 @@ _DEPTH = 1000
     show_default=True,
     help="Compression of chunks.",
 )
-@click.option(
+@number_option(
     "--max-cache-size",
     "cache_bytes",
-    metavar="BYTES",
-    type=click.IntRange(0),
+    within=(0, None),
     default=_MAX_CACHE_BYTES,
-    show_default=True,
+    metavar="BYTES",
     help="Maximum memory for messages waiting to be written.",
 )
-@click.option(
-    "--depth",
-    metavar="N",
-    type=click.IntRange(1),
-    default=_DEPTH,
-    show_default=True,
-    help="Minimum queue depth per topic.",
+@number_option(
+    "--depth", within=(1, None), default=_DEPTH, metavar="N", help="Minimum queue depth per topic."
 )
 @click.option("--outside", is_flag=True, help="Record in the DDS domain $ROS_DOMAIN_ID instead.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was recorded as JSON.")

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.options import examples, number_option, platform_option
 from rmw_manycore_py.cli.common.view import require_platform
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native.errors import translate_native_errors
@@ -23,11 +23,10 @@ from rmw_manycore_py.native.errors import translate_native_errors
     help="Trace only this cluster.",
 )
 @click.option("--node", "nodes", multiple=True, help="Trace only this node (full name).")
-@click.option(
+@number_option(
     "--events",
-    type=click.IntRange(1, 1 << 24),
+    within=(1, 1 << 24),
     default=1 << 18,
-    show_default=True,
     help="Ring size of each thread, in events of 32 bytes.",
 )
 @click.option("--discard", is_flag=True, help="Discard an earlier unsaved trace.")

@@ -12,7 +12,7 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.common.looking import look_at
-from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.options import examples, number_option, platform_option
 from rmw_manycore_py.cli.common.output_file import OutputFile, writing
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.view import require_platform
@@ -30,22 +30,17 @@ DEFAULT_PORT = 8642
         "manycore view", "manycore view --port 0 --open", "manycore view --once -o chip.svg"
     ),
 )
-@click.option(
-    "--port",
-    type=click.IntRange(0, 65535),
-    default=DEFAULT_PORT,
-    show_default=True,
-    help="Port on 127.0.0.1; 0 picks a free one.",
+@number_option(
+    "--port", within=(0, 65535), default=DEFAULT_PORT, help="Port on 127.0.0.1; 0 picks a free one."
 )
 @click.option("--open", "opens", is_flag=True, help="Also open the page in the browser.")
 @click.option("--once", is_flag=True, help="Write the picture to a file instead of serving it.")
 @click.option("-o", "--output", type=OutputFile(".svg"), help="With --once: file to write.")
-@click.option(
+@number_option(
     "--period",
     "period_s",
-    type=click.FloatRange(min=0.1),
+    within=(0.1, None),
     default=0.5,
-    show_default=True,
     help="Seconds between updates; with --once, the time over which rates are measured.",
 )
 @platform_option

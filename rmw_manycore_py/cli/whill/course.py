@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 import numpy as np
 
-from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.options import examples, number_option
 from rmw_manycore_py.cli.common.output_file import writing
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.errors import ManycoreError
@@ -42,41 +42,35 @@ MIN_STRAIGHT_M = 5.0
     ),
 )
 @click.argument("directory", type=click.Path(file_okay=False, path_type=Path))
-@click.option(
+@number_option(
     "--length",
     "length_m",
-    type=click.FloatRange(20.0, 2000.0),
+    within=(20.0, 2000.0),
     default=CourseShape.length_m,
-    show_default=True,
     help="Length of the course in metres.",
 )
-@click.option(
+@number_option(
     "--turn-radius",
     "turn_radius_m",
-    type=click.FloatRange(3.0, 50.0),
+    within=(3.0, 50.0),
     default=CourseShape.turn_radius_m,
-    show_default=True,
     help="Radius of the two turns in metres.",
 )
-@click.option(
+@number_option(
     "--speed",
     "speed_m_s",
-    type=click.FloatRange(0.3, MAX_SPEED_M_S),
+    within=(0.3, MAX_SPEED_M_S),
     default=CourseShape.speed_m_s,
-    show_default=True,
     help="Speed on straights, metres per second.",
 )
-@click.option(
+@number_option(
     "--turn-speed",
     "turn_speed_m_s",
-    type=click.FloatRange(0.3, MAX_SPEED_M_S),
+    within=(0.3, MAX_SPEED_M_S),
     default=CourseShape.turn_speed_m_s,
-    show_default=True,
     help="Speed in turns, metres per second.",
 )
-@click.option(
-    "--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the streets."
-)
+@number_option("--seed", within=(0, None), default=1, help="Seed of the streets.")
 @click.option(
     "--map",
     "map_path",
