@@ -42,6 +42,18 @@ def talking(start):
 
 
 @pytest.fixture
+def manycore(start):
+    """Return a function that runs a verb and returns its output."""
+
+    def call(*words: object, status: int = 0, **variables: str) -> str:
+        program = start(forked_manycore(*words), **variables)
+        assert program.wait() == status, program
+        return program.output
+
+    return call
+
+
+@pytest.fixture
 def view(start):
     """Start a viewer; return it and its URL."""
     program = start(forked_manycore("view", "--port", "0", "--period", "0.2"))

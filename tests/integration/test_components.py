@@ -11,7 +11,6 @@ import pytest
 
 from support import IS_MANYCORE
 from support.nodes.ros import announce, peer_node
-from support.peers.programs import forked_manycore
 from support.processes.commands import manycore_command, peer_command
 
 pytestmark = [
@@ -20,18 +19,6 @@ pytestmark = [
 ]
 
 SPEAKER = ("demo", "demo::Speaker")
-
-
-@pytest.fixture
-def manycore(start):
-    """Return a function that runs a verb and returns its output."""
-
-    def call(*words: str, status: int = 0, **variables: str) -> str:
-        program = start(forked_manycore(*words), **variables)
-        assert program.wait() == status, program
-        return program.output
-
-    return call
 
 
 def container(name: str = "box") -> None:

@@ -13,7 +13,6 @@ from typing import Any
 import pytest
 
 from support import IS_MANYCORE, MAPFILES, wait_until
-from support.peers.programs import forked_manycore
 from support.processes.commands import example_command, manycore_command
 from support.processes.inspection import kill_all
 from support.processes.platforms import PLATFORMS, environment, leftovers
@@ -22,18 +21,6 @@ pytestmark = [
     pytest.mark.integration,
     pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
 ]
-
-
-@pytest.fixture
-def manycore(start):
-    """Return a function that runs a verb and returns its output."""
-
-    def call(*words: str, status: int = 0) -> str:
-        program = start(forked_manycore(*words))
-        assert program.wait() == status, program
-        return program.output
-
-    return call
 
 
 @pytest.fixture

@@ -31,18 +31,6 @@ pytestmark = [
 SECOND = ("topic", "pub", "-r", "20", "/chatter", "std_msgs/msg/String")
 
 
-@pytest.fixture
-def manycore(start):
-    """Return a function that runs a verb and returns its output."""
-
-    def call(*words: object, status: int = 0) -> str:
-        program = start(forked_manycore(*map(str, words)))
-        assert program.wait() == status, program
-        return program.output
-
-    return call
-
-
 def hear(talking) -> None:
     """Wait until a message was received that was published after the call."""
     talker, listener = talking

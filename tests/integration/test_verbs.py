@@ -12,7 +12,6 @@ import yaml
 
 from support import IS_MANYCORE
 from support.nodes.ros import announce, peer_node
-from support.peers.programs import forked_manycore
 from support.processes.commands import example_command, manycore_command, peer_command
 
 pytestmark = [
@@ -21,18 +20,6 @@ pytestmark = [
 ]
 
 SLOW = ("--ros-args", "-p", "rate_hz:=0.001")
-
-
-@pytest.fixture
-def manycore(start):
-    """Return a function that runs a verb and returns its output."""
-
-    def call(*words: str, status: int = 0) -> str:
-        program = start(forked_manycore(*words))
-        assert program.wait() == status, program
-        return program.output
-
-    return call
 
 
 def test_services_are_listed_and_called(start, manycore) -> None:

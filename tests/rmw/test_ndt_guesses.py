@@ -4,12 +4,16 @@
 from __future__ import annotations
 
 import pytest
-from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped
 
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
-from rmw_manycore_py.ndt.messages.conversions import matrix_of, nanoseconds, pose_with_covariance
+from rmw_manycore_py.ndt.messages.conversions import (
+    matrix_of,
+    nanoseconds,
+    pose_with_covariance,
+    stamp_of,
+)
 from rmw_manycore_py.ndt.messages.point_cloud import encode
 from rmw_manycore_py.ndt.nodes.scan_matcher.guesses import PERIODS
 from support import TIMEOUT_S
@@ -23,10 +27,6 @@ from support.nodes.scan_matching import (
     street_map,
     street_scan,
 )
-
-
-def stamp_of_ns(time_ns: int) -> Time:
-    return Time(sec=time_ns // 1_000_000_000, nanosec=time_ns % 1_000_000_000)
 
 
 def value_of(report: DiagnosticStatus, key: str) -> str:
@@ -50,10 +50,10 @@ def test_no_scan_is_matched_from_the_guess_of_another(stack, start):
     now_ns = nanoseconds(stack.stamp())
     stamps_ns = [now_ns + index * 100_000_000 for index in range(4)]
     for stamp_ns in stamps_ns:
-        stack.scans.publish(encode(street_scan(), stamp_of_ns(stamp_ns), "base_link"))
+        stack.scans.publish(encode(street_scan(), stamp_of(stamp_ns), "base_link"))
     for index, stamp_ns in enumerate(stamps_ns):
         guess = TRUTH @ from_xyz_rpy((3.0 * (len(stamps_ns) - 1 - index), 0.0, 0.0))
-        stamp = stamp_of_ns(stamp_ns)
+        stamp = stamp_of(stamp_ns)
         stack.guesses.publish(pose_with_covariance(guess, COVARIANCE, stamp, "map"))
     reports = [stack.report_of(stamp_ns) for stamp_ns in stamps_ns]
     assert "skipped" not in reports[-1].message
@@ -75,9 +75,9 @@ def test_a_guess_too_old_for_a_scan_is_refused(matched):
     now_ns = nanoseconds(matched.stamp())
     for number in range(PERIODS):  # a period of ten milliseconds, however long matching takes
         stamp_ns = now_ns + number * 10_000_000
-        matched.report_of(matched.send(street_scan(), stamp=stamp_of_ns(stamp_ns)))
+        matched.report_of(matched.send(street_scan(), stamp=stamp_of(stamp_ns)))
     ahead_ns = stamp_ns + 900_000_000
-    matched.scans.publish(encode(street_scan(), stamp_of_ns(ahead_ns), "base_link"))
+    matched.scans.publish(encode(street_scan(), stamp_of(ahead_ns), "base_link"))
     report = matched.report_of(ahead_ns)
     assert "Couldn't interpolate pose: the newest pose is" in report.message
     assert ahead_ns not in matched.poses
@@ -91,6 +91,6 @@ def test_as_in_autoware_a_guess_holds_for_a_second(stack, start):
     stack.pose_of(street_scan())
     stack.report_of(stamp_ns := stack.send(street_scan()))
     ahead_ns = stamp_ns + 500_000_000
-    stack.scans.publish(encode(street_scan(), stamp_of_ns(ahead_ns), "base_link"))
+    stack.scans.publish(encode(street_scan(), stamp_of(ahead_ns), "base_link"))
     spin_until(stack.node, lambda: ahead_ns in stack.poses)
     assert error_m(stack.poses[ahead_ns]) < 0.1

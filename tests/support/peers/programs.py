@@ -13,7 +13,7 @@ import sys
 from support.processes.commands import manycore_command, peer_command
 
 
-def forked_manycore(*arguments: str) -> list[str]:
+def forked_manycore(*arguments: object) -> list[str]:
     """Return the command of a peer that is the command line tool."""
     return peer_command(run_manycore, *map(str, arguments))
 

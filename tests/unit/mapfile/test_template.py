@@ -7,22 +7,14 @@ import pytest
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapfile import check, init
+from support.samples.node_source import node_source
 
 pytestmark = pytest.mark.unit
-
-NODE = """\
-from rclpy.node import Node
-from std_msgs.msg import String
-class A(Node):
-    def __init__(self):
-        super().__init__("{name}")
-        self.create_{kind}(String, {topic}, 10)
-"""
 
 
 def write_node(file: Path, name: str, kind: str, topic: str = '"chatter"') -> None:
     file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(NODE.format(name=name, kind=kind, topic=topic))
+    file.write_text(node_source(name, kind, topic=topic))
 
 
 def test_only_the_clusters_are_left_to_fill_in(tmp_path: Path) -> None:

@@ -12,17 +12,10 @@ from rmw_manycore_py.mapfile import check
 from rmw_manycore_py.mapfile.format.loader import load_mapfile
 from rmw_manycore_py.mapfile.placing.used_types import used_types
 from rmw_manycore_py.mapfile.programs.source import Sources
+from support.samples.node_source import node_source
 
 pytestmark = pytest.mark.unit
 
-NODE = """\
-from rclpy.node import Node
-from std_msgs.msg import {types}
-class One(Node):
-    def __init__(self):
-        super().__init__("one")
-        self.create_publisher(String, "chatter", 10)
-"""
 LAUNCH = """\
 <launch>
   <node exec="sh" name="first" launch-prefix="taskset -c 0"/>
@@ -32,7 +25,7 @@ LAUNCH = """\
 
 
 def _write(directory: Path, mapfile: str, types: str = "String") -> Path:
-    (directory / "one.py").write_text(NODE.format(types=types))
+    (directory / "one.py").write_text(node_source("one", types=types))
     (directory / "pair.launch.xml").write_text(LAUNCH)
     file = directory / "mapfile.yaml"
     file.write_text(mapfile)

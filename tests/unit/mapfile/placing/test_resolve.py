@@ -14,18 +14,9 @@ from rmw_manycore_py.mapfile.placing.parameter_values import parameter_text
 from rmw_manycore_py.mapfile.placing.sessions import MAX_SESSIONS
 from rmw_manycore_py.platform.topology import Core
 from rmw_manycore_py.ros.names import resolve_topic
+from support.samples.node_source import node_source
 
 pytestmark = pytest.mark.unit
-
-TALKER = """\
-from rclpy.node import Node
-from std_msgs.msg import String
-class Talker(Node):
-    def __init__(self):
-        super().__init__("talker")
-        self.create_publisher(String, "chatter", 10)
-"""
-LISTENER = TALKER.replace("create_publisher", "create_subscription")
 
 Check = Callable[[str], Placement]
 CPU = min(os.sched_getaffinity(0))
@@ -33,8 +24,8 @@ CPU = min(os.sched_getaffinity(0))
 
 @pytest.fixture
 def resolved(tmp_path: Path) -> Check:
-    (tmp_path / "talker.py").write_text(TALKER)
-    (tmp_path / "listener.py").write_text(LISTENER)
+    (tmp_path / "talker.py").write_text(node_source())
+    (tmp_path / "listener.py").write_text(node_source(kind="subscription"))
 
     def check_text(text: str) -> Placement:
         (tmp_path / "mapfile.yaml").write_text(text)
@@ -312,7 +303,7 @@ def test_an_executable_is_found_in_the_prefixes(
 ) -> None:
     executable = tmp_path / "prefix/lib/demo/speak"
     executable.parent.mkdir(parents=True)
-    executable.write_text("#!/usr/bin/env python3\n" + TALKER)
+    executable.write_text("#!/usr/bin/env python3\n" + node_source())
     executable.chmod(0o755)
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "prefix"))
     text = "nodes:\n  a: {cluster: 1, package: demo, executable: speak}\n"

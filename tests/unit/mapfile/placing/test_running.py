@@ -17,18 +17,11 @@ from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import Placement, as_data, check, load_mapfile, resolve
 from rmw_manycore_py.mapfile.placing.show import rules_in_words
 from rmw_manycore_py.platform.topology import Core
+from support.samples.node_source import node_source
 
 pytestmark = pytest.mark.unit
 
 Write = Callable[[str], Path]
-TALKER = """\
-from rclpy.node import Node
-from std_msgs.msg import String
-class Talker(Node):
-    def __init__(self):
-        super().__init__("talker")
-        self.create_publisher(String, {topic}, 10)
-"""
 LAUNCH = """\
 from launch import LaunchDescription
 from launch.actions import ExecuteProcess, RegisterEventHandler, TimerAction
@@ -49,7 +42,7 @@ def generate_launch_description():
 
 @pytest.fixture
 def write(tmp_path: Path) -> Write:
-    (tmp_path / "talker.py").write_text(TALKER.format(topic='"chatter"'))
+    (tmp_path / "talker.py").write_text(node_source())
 
     def write_text(text: str) -> Path:
         (tmp_path / "map.yaml").write_text(text)
@@ -140,5 +133,5 @@ def test_a_topic_that_no_source_publishes_is_named(write: Write, tmp_path: Path)
     assert crossing(write, "/chat*: ") == ()
     assert crossing(write, "/news: TYPE", "remappings: {chatter: /news}") == ()
     assert crossing(write, "/other: TYPE", "publish: {/other: std_msgs/msg/String}") == ()
-    (tmp_path / "talker.py").write_text(TALKER.format(topic="sys.argv[1]"))
+    (tmp_path / "talker.py").write_text(node_source(topic="sys.argv[1]"))
     assert crossing(write, "/chatters: TYPE") == (), "its source does not show all topics"
