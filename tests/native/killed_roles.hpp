@@ -21,27 +21,21 @@ constexpr const char * moved_topic = "/moved";
 constexpr uint32_t sized_bytes = 300'000;
 constexpr uint32_t sized_depth = 10'000;  // a queue of 128 KiB, likewise
 
-inline std::shared_ptr<Process> join(const std::string & platform) {
-  Placement placement;
-  placement.platform = platform;
-  return Process::join(placement);
-}
-
 inline const Role joins("joins", [](Lines &, const Arguments & arguments) {
   begin_steps();
-  join(arguments.at(0));
+  join_platform(arguments.at(0));
   finish_steps();
 });
 
 inline const Role leaves("leaves", [](Lines &, const Arguments & arguments) {
-  auto process = join(arguments.at(0));
+  auto process = join_platform(arguments.at(0));
   begin_steps();
   process.reset();
   finish_steps();
 });
 
 inline const Role creates("creates", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
+  const auto process = join_platform(arguments.at(0));
   begin_steps();
   process->remove_node(process->add_node("node", "/", "/"));
   process->create_publisher(on_topic(topic, transient_local(10)));
@@ -51,7 +45,7 @@ inline const Role creates("creates", [](Lines &, const Arguments & arguments) {
 
 /// Endpoints that are matched with others and each other.
 inline const Role matches("matches", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
+  const auto process = join_platform(arguments.at(0));
   begin_steps();
   auto publisher = process->create_publisher(on_topic(topic, transient_local(10)));
   auto subscription = process->create_subscription(on_topic(topic, transient_local(10)));
@@ -62,10 +56,7 @@ inline const Role matches("matches", [](Lines &, const Arguments & arguments) {
 
 /// A subscription and a publisher of a transferred topic, each of which makes a landing.
 inline const Role moves("moves", [](Lines &, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  placement.cluster = 2;
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0), 2);
   begin_steps();
   process->create_subscription(on_topic(moved_topic, keep_last(1)));
   process->create_publisher(on_topic(moved_topic, keep_last(1)));
@@ -74,7 +65,7 @@ inline const Role moves("moves", [](Lines &, const Arguments & arguments) {
 
 /// A topic DSM and a queue that are backed, and given back, without the registry lock.
 inline const Role sizes("sizes", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
+  const auto process = join_platform(arguments.at(0));
   begin_steps();
   process->create_publisher(on_topic(sized_topic, keep_last(1)));
   process->create_subscription(on_topic(sized_topic, keep_last(sized_depth)));
@@ -82,7 +73,7 @@ inline const Role sizes("sizes", [](Lines &, const Arguments & arguments) {
 });
 
 inline const Role publishes("publishes", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
+  const auto process = join_platform(arguments.at(0));
   const auto publisher = process->create_publisher(on_topic(topic, transient_local(2)));
   begin_steps();
   publish(*publisher, 1, sizeof(Payload), 2);
@@ -92,7 +83,7 @@ inline const Role publishes("publishes", [](Lines &, const Arguments & arguments
 });
 
 inline const Role takes("takes", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
+  const auto process = join_platform(arguments.at(0));
   const auto subscription = process->create_subscription(on_topic(topic, transient_local(2)));
   begin_steps();
   take_all(*subscription);
@@ -100,7 +91,7 @@ inline const Role takes("takes", [](Lines &, const Arguments & arguments) {
 });
 
 inline const Role closes("closes", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
+  const auto process = join_platform(arguments.at(0));
   auto subscription = process->create_subscription(on_topic(topic, transient_local(2)));
   begin_steps();
   subscription.reset();
@@ -109,7 +100,7 @@ inline const Role closes("closes", [](Lines &, const Arguments & arguments) {
 
 /// Endpoints with many matches.
 inline const Role closes_many("closes_many", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
+  const auto process = join_platform(arguments.at(0));
   auto publisher = process->create_publisher(on_topic(crowded_topic, transient_local(2)));
   auto subscription = process->create_subscription(on_topic(crowded_topic, transient_local(2)));
   begin_steps();
@@ -129,7 +120,7 @@ inline const Role reaps("reaps", [](Lines &, const Arguments & arguments) {
 
 /// Messages of two publishers: when the newer one leaves, 100 subscriptions drop the older one's.
 inline const Role sweeps_many("sweeps_many", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
+  const auto process = join_platform(arguments.at(0));
   const EndpointSpec spec = on_topic(crowded_topic, transient_local(1));
   auto newer = process->create_publisher(spec);
   auto older = process->create_publisher(spec);

@@ -242,9 +242,7 @@ const Role node("node", [](Lines & test, const Arguments & arguments) {
 }  // namespace
 
 void join_and_stay(Lines & test, const std::string & platform) {
-  Placement placement;
-  placement.platform = platform;
-  const auto process = Process::join(placement);
+  const auto process = join_platform(platform);
   test.say("joined");
   test.hear();
 }

@@ -136,6 +136,13 @@ TestPlatform::~TestPlatform() {
 
 bool TestPlatform::exists() const { return access(paths().directory.c_str(), F_OK) == 0; }
 
+std::shared_ptr<Process> join_platform(const std::string & platform, uint32_t cluster) {
+  Placement placement;
+  placement.platform = platform;
+  placement.cluster = cluster;
+  return Process::join(placement);
+}
+
 std::shared_ptr<Process> TestPlatform::join(uint32_t cluster, WaitMode mode) const {
   Placement placement;
   placement.platform = name_;

@@ -14,6 +14,10 @@
 #include "transport/process.hpp"
 #include "transport/registry/registry.hpp"
 
+/// Joins the platform of this name. For roles, to which a test passes only that.
+std::shared_ptr<manycore::Process> join_platform(
+  const std::string & platform, uint32_t cluster = 1);
+
 /// A platform for one test. Its destructor checks that no file and no receive thread is left.
 class TestPlatform {
 public:

@@ -30,11 +30,9 @@ const Role repairer("repairer", [](Lines & test, const Arguments & arguments) {
 /// Repeatedly walks along the endpoints older than its own. Each walk must find the oldest
 /// endpoint; reports after each walk.
 const Role walker("walker", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   const auto publisher = process->create_publisher(on_topic("/chain", keep_last(1)));
-  Registry registry(PlatformPaths::of(placement.platform));
+  Registry registry(PlatformPaths::of(arguments.at(0)));
   const auto oldest = static_cast<uint32_t>(std::stoul(arguments.at(1)));
   begin_steps();
   while (true) {

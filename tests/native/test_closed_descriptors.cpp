@@ -44,9 +44,7 @@ void require_taken_over(const std::string & file) {
 }
 
 const Role daemon_publisher("daemon", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  auto process = Process::join(placement);
+  auto process = join_platform(arguments.at(0));
   auto publisher = process->create_publisher(on_topic("/x", keep_last(10)));
   wait_until("a match", [&] { return publisher->matched().current == 1; });
   wait_until("its receive thread is watched", [] { return has_pidfds(getpid()); });

@@ -32,9 +32,7 @@ using Bytes = std::vector<char>;
 
 /// Joins, uses everything briefly, and leaves.
 const Role visitor("visitor", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   process->remove_node(process->add_node("visitor", "/", "/"));
   const auto publisher = process->create_publisher(on_topic("/x", transient_local(10)));
   const auto subscription = process->create_subscription(on_topic("/x", transient_local(10)));
@@ -50,16 +48,14 @@ const Role visitor("visitor", [](Lines & test, const Arguments & arguments) {
 
 /// Damages the blocks of its publisher's table of seats as requested, and closes the publisher.
 const Role table_breaker("table_breaker", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   auto publisher = process->create_publisher(on_topic("/table", keep_last(1)));
   std::vector<std::unique_ptr<Subscription>> subscriptions;
   for (uint32_t i = 0; i <= seats_in_header; ++i) {
     subscriptions.push_back(process->create_subscription(on_topic("/table", keep_last(1))));
   }
   publish(*publisher, 1);
-  Registry registry(PlatformPaths::of(placement.platform));
+  Registry registry(PlatformPaths::of(arguments.at(0)));
   const auto slot = static_cast<uint32_t>(endpoint_in(publisher->gid()));
   const uint64_t offset = registry.endpoints()[slot].block.offset();
   EntryBlocks & blocks = registry.clusters().at(1).find<TopicDsmHeader>(offset)->further_seats;

@@ -35,10 +35,8 @@ void handle_interrupt(int) {
 
 /// Publishes, takes, reads the graph, and sleeps until it is woken; until SIGINT.
 const Role busy_node("busy_node", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  placement.cluster = static_cast<uint32_t>(std::stoul(arguments.at(1)));
-  const auto process = Process::join(placement);
+  const auto process =
+    join_platform(arguments.at(0), static_cast<uint32_t>(std::stoul(arguments.at(1))));
   const uint32_t node = process->add_node("busy", "/", "/");
   const bool publishes = arguments.at(2) == "publishes";
   std::vector<std::unique_ptr<Publisher>> publishers;

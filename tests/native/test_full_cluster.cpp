@@ -56,9 +56,7 @@ private:
 
 /// Creates as many endpoints as five rclpy nodes have, in a process that joins late.
 const Role latecomer("latecomer", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   std::vector<std::unique_ptr<Publisher>> publishers;
   std::vector<std::unique_ptr<Subscription>> subscriptions;
   for (int i = 0; i < 50; ++i) {

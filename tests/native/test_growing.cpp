@@ -28,9 +28,7 @@ constexpr uint64_t large = 256 * mebibyte;
 
 /// Publishes a large message on each command, and answers "ok" or the error.
 const Role greedy("greedy", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   const auto publisher = process->create_publisher(on_topic("/large", keep_last(1)));
   test.say("ready");
   while (true) {
@@ -42,11 +40,9 @@ const Role greedy("greedy", [](Lines & test, const Arguments & arguments) {
 
 /// Reserves SMEM for a generation and then stops. "locked": stops holding the registry lock.
 const Role reserver("reserver", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   const auto publisher = process->create_publisher(on_topic("/reserved", keep_last(1)));
-  Registry registry(PlatformPaths::of(placement.platform));
+  Registry registry(PlatformPaths::of(arguments.at(0)));
   EndpointEntry * entry = &registry.endpoints()[0];
   while (entry->gid != publisher->gid()) {
     ++entry;

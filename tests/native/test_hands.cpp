@@ -23,10 +23,8 @@ using transfer_of_test::dsm_bytes;
 namespace {
 
 void subscribe_by_steps(const Arguments & arguments, uint32_t depth) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  placement.cluster = static_cast<uint32_t>(std::stoul(arguments.at(1)));
-  const auto process = Process::join(placement);
+  const auto process =
+    join_platform(arguments.at(0), static_cast<uint32_t>(std::stoul(arguments.at(1))));
   begin_steps();
   const auto subscription = process->create_subscription(on_topic("/x", keep_last(depth)));
   finish_steps();
@@ -34,9 +32,7 @@ void subscribe_by_steps(const Arguments & arguments, uint32_t depth) {
 
 /// Publishes to more subscriptions than it has seats for.
 const Role addresses("addresses", [](Lines &, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   const auto publisher = process->create_publisher(on_topic("/x", keep_last(1)));
   begin_steps();
   publish(*publisher, 1);

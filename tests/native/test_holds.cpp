@@ -44,9 +44,7 @@ uint32_t chunks_of(Fixture & f, const Publisher & publisher) {
 
 /// Holds the next message, then takes the rest while single-stepped.
 const Role holds("holds", [](Lines &, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   const auto subscription = process->create_subscription(on_topic("/driver", transient_local(4)));
   begin_steps();
   std::vector<std::unique_ptr<Hold>> kept;

@@ -279,10 +279,7 @@ TEST_CASE("invalid platform names never become paths") {
 TEST_CASE("no platform name collides with a file of the platform or of the user directory") {
   for (const std::string name : {"lock", "alive", "registry", "cluster-1"}) {
     CAPTURE(name);
-    Placement placement;
-    placement.platform = name;
-    placement.cluster = 1;
-    const auto process = Process::join(placement);
+    const auto process = join_platform(name);
     const std::vector<std::string> names = platform_names();
     CHECK(std::count(names.begin(), names.end(), name) == 1);
     CHECK(is_alive(PlatformPaths::of(name)));

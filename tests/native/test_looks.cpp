@@ -13,9 +13,7 @@ using manycore::Hint;
 namespace {
 
 const Role looks("looks", [](Lines &, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   const auto subscription = process->create_subscription(on_topic("/driver", keep_last(10)));
   begin_steps();
   take_all(*subscription);

@@ -21,9 +21,7 @@ constexpr const char * topic = "/x";
 
 /// Tries to take without a system call until it finds a message, and reports its number.
 const Role looks("looks", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   const auto subscription = process->create_subscription(on_topic(topic, keep_last(10)));
   begin_steps();
   while (true) {

@@ -19,9 +19,7 @@ constexpr uint32_t depth = 2;
 
 /// Takes messages published before and after its match.
 const Role reads("reads_generations", [](Lines &, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   const auto subscription = process->create_subscription(on_topic(topic, transient_local(depth)));
   begin_steps();
   take_all(*subscription);  // throws if a message is torn

@@ -24,12 +24,10 @@ namespace {
 
 /// Publishes record 1 completely, writes record 2 as far as requested, and then waits to be killed.
 const Role interrupted_publisher("interrupted", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   const auto publisher = process->create_publisher(on_topic("/x", keep_last(10)));
   wait_until("a match", [&] { return publisher->matched().current == 1; });
-  Registry registry(PlatformPaths::of(placement.platform));
+  Registry registry(PlatformPaths::of(arguments.at(0)));
   EndpointEntry * entry = &registry.endpoints()[0];
   while (entry->gid != publisher->gid()) {
     ++entry;

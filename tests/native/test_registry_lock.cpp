@@ -29,13 +29,8 @@ namespace {
 /// A member of a platform that takes the registry lock with its own badge.
 struct Member {
   explicit Member(const std::string & platform)
-  : process(join(platform)), registry(PlatformPaths::of(platform)) {
+  : process(join_platform(platform)), registry(PlatformPaths::of(platform)) {
     registry.use_badge_of(process_of(registry, ProcessIdentity::own()));
-  }
-  static std::shared_ptr<Process> join(const std::string & platform) {
-    Placement placement;
-    placement.platform = platform;
-    return Process::join(placement);
   }
 
   std::shared_ptr<Process> process;

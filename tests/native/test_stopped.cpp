@@ -34,9 +34,7 @@ const Role lock_holder("lock_holder", [](Lines & test, const Arguments & argumen
 
 /// Publishes the first message of a topic DSM, which has to grow for it.
 const Role large_publisher("large_publisher", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   const auto publisher = process->create_publisher(on_topic("/growing", keep_last(1)));
   test.say("ready");
   test.hear();
@@ -75,9 +73,7 @@ struct LockFile {
 
 /// Leaves a platform when it is told to.
 const Role leaver("leaver", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  auto process = Process::join(placement);
+  auto process = join_platform(arguments.at(0));
   test.say("ready");
   test.hear();
   process.reset();

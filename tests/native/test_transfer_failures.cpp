@@ -23,10 +23,7 @@ namespace {
 
 /// Subscribes to the topics /s1, /s2 ... in cluster 2, up to a number: "ok", or the error.
 const Role subscribes("subscribes", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  placement.cluster = 2;
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0), 2);
   std::vector<std::unique_ptr<Subscription>> subscriptions;
   for (int i = 1; i <= std::stoi(arguments.at(1)); ++i) {
     const Refusal refusal = refusal_of([&] {

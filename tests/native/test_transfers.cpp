@@ -22,10 +22,7 @@ namespace {
 
 /// Says the size of each message that comes.
 const Role sizes("sizes", [](Lines & test, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  placement.cluster = 2;
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0), 2);
   const auto subscription = process->create_subscription(on_topic("/x", keep_last(10)));
   test.say("subscribed");
   while (true) {

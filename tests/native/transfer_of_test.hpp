@@ -22,9 +22,7 @@ constexpr Transfer kinds[] = {Transfer::message, Transfer::session, Transfer::as
 
 /// Publishes message 1, and message 2 of this size, through which the test may step.
 inline const Role sends("sends", [](Lines &, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
+  const auto process = join_platform(arguments.at(0));
   const auto publisher = process->create_publisher(on_topic("/x", keep_last(10)));
   wait_until("a match", [&] { return publisher->matched().current == 1; });
   publish(*publisher, 1, sizeof(Payload), 2);
