@@ -12,6 +12,7 @@ import pytest
 from support import IS_MANYCORE
 from support.nodes.ros import announce, peer_node
 from support.processes.commands import manycore_command, peer_command
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,
@@ -76,16 +77,24 @@ def container(name: str = "box") -> None:
         rclpy.spin(node)
 
 
-def test_components_are_loaded_listed_and_unloaded(start, manycore) -> None:
+LOAD = ("component", "load", "/box", *SPEAKER)
+UNLOAD = ("component", "unload", "/box")
+
+
+@pytest.fixture
+def box(start) -> Program:
     box = start(peer_command(container))
     box.wait_for("ready")
+    return box
+
+
+def test_components_are_loaded_listed_and_unloaded(box, manycore) -> None:
     options = ("-n", "left", "--node-namespace", "/demo", "--log-level", "warn", "-e", "x:=1")
-    load = ("component", "load", "/box", *SPEAKER)
-    loaded = manycore(*load, *options, "-p", "gain:=2.5", "-p", "words:=hello")
+    loaded = manycore(*LOAD, *options, "-p", "gain:=2.5", "-p", "words:=hello")
     assert loaded == "Loaded component 1 into '/box' container node as '/demo/left'"
     box.wait_for("^log level 30, extra 1$")
     assert manycore("param", "get", "/demo/left", "gain") == "Double value is: 2.5"
-    assert manycore(*load, "-q", "-r", "__node:=renamed", "--log-level", "10") == "2  /renamed"
+    assert manycore(*LOAD, "-q", "-r", "__node:=renamed", "--log-level", "10") == "2  /renamed"
     assert manycore("component", "list").splitlines() == [
         "/box",
         "  1  /demo/left",
@@ -95,17 +104,19 @@ def test_components_are_loaded_listed_and_unloaded(start, manycore) -> None:
     assert manycore("component", "list", "--containers-only") == "/box"
     listed = json.loads(manycore("component", "list", "--json"))
     assert listed == {"/box": [{"id": 1, "node": "/demo/left"}, {"id": 2, "node": "/renamed"}]}
-    unload = ("component", "unload", "/box")
-    assert manycore(*unload, "1") == "Unloaded component 1 from '/box' container node"
-    assert manycore(*unload, "2", "-q") == "2"
+    assert manycore(*UNLOAD, "1") == "Unloaded component 1 from '/box' container node"
+    assert manycore(*UNLOAD, "2", "-q") == "2"
     assert manycore("node", "list") == "/box"
 
-    gone = manycore(*unload, "7", status=1)
+
+@pytest.mark.usefixtures("box")
+def test_components_that_cannot_be_loaded_or_unloaded(manycore) -> None:
+    gone = manycore(*UNLOAD, "7", status=1)
     assert "Failed to unload component 7 from '/box' container node\n    No node of that id" in gone
     refused = manycore("component", "load", "/box", "demo", "demo::Hearer", status=1)
     assert "Failed to load component: No such plugin" in refused
-    assert "-p: expected name:=value, found 'gain'" in manycore(*load, "-p", "gain", status=2)
-    assert "--log-level" in manycore(*load, "--log-level", "loud", status=2)
+    assert "-p: expected name:=value, found 'gain'" in manycore(*LOAD, "-p", "gain", status=2)
+    assert "--log-level" in manycore(*LOAD, "--log-level", "loud", status=2)
     unknown = manycore("component", "list", "/bx", status=1)
     assert unknown == "manycore: Unable to find container node '/bx'; did you mean '/box'?"
 
@@ -135,7 +146,7 @@ def installed(prefix: Path) -> str:
     return str(prefix)
 
 
-def test_registered_types_and_a_container_of_its_own(start, manycore, tmp_path) -> None:
+def test_registered_types(manycore, tmp_path) -> None:
     prefix = {"AMENT_PREFIX_PATH": installed(tmp_path / "prefix")}
     types = ("component", "types")
     assert manycore(*types, **prefix).splitlines()[:3] == [
@@ -146,6 +157,10 @@ def test_registered_types_and_a_container_of_its_own(start, manycore, tmp_path) 
     assert manycore(*types, "demo", **prefix).splitlines() == ["demo::Speaker", "demo::Hearer"]
     unknown = manycore(*types, "dmo", status=1, **prefix)
     assert "Unable to find package 'dmo'; did you mean 'demo'?" in unknown
+
+
+def test_a_container_of_its_own(start, manycore, tmp_path) -> None:
+    prefix = {"AMENT_PREFIX_PATH": installed(tmp_path / "prefix")}
     alone = ("component", "standalone", *SPEAKER, "-n", "left", "-c", "own_box")
     missing = manycore(*alone, status=1)
     assert "Package 'rclcpp_components' not found" in missing

@@ -7,6 +7,7 @@ import json
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -65,13 +66,20 @@ def test_each_node_has_its_policy_and_the_runner_keeps_its_own(start, tmp_path, 
     }
 
 
-def test_what_limits_forbid_is_refused_before_anything_starts(start, tmp_path, platform) -> None:
-    mapfile = write(tmp_path, plain={}, real={"policy": "fifo", "priority": 30})
+FORBIDDEN: Any = {"plain": {}, "real": {"policy": "fifo", "priority": 30}}
+
+
+def test_what_limits_forbid_is_refused_before_anything_starts(start, tmp_path) -> None:
+    mapfile = write(tmp_path, **FORBIDDEN)
     run = start([*WITHOUT_RIGHTS, *manycore_command("run", mapfile)])
     assert run.wait() == EXIT_BAD_INPUT
     assert "'real': scheduling fifo 30 is not allowed (limit rtprio: 0)" in run.output
     assert "rtprio 30' to /etc/security/limits.conf" in run.output
     assert "started" not in run.output
+
+
+def test_what_limits_forbid_is_shown(start, tmp_path) -> None:
+    mapfile = write(tmp_path, **FORBIDDEN)
     show = start([*WITHOUT_RIGHTS, *manycore_command("map", "show", mapfile)])
     assert show.wait() == 0
     assert "notice: 'real' cannot run here: scheduling fifo 30 is not allowed" in show.output

@@ -77,7 +77,7 @@ def running(start):
     return node
 
 
-def test_topics_with_the_options_of_ros2(running, start, manycore) -> None:
+def test_topics_with_the_options_of_ros2(running, manycore) -> None:
     looks = ("--no-daemon", "--spin-time", "1", "-s")
     assert manycore("topic", "list", *looks).splitlines()[:2] == ["/array", "/chatter"]
     assert "/_hidden" in manycore("topic", "--include-hidden-topics", "list").splitlines()
@@ -85,6 +85,9 @@ def test_topics_with_the_options_of_ros2(running, start, manycore) -> None:
     assert "Unknown topic '/chattr'; did you mean '/chatter'?" in manycore(
         "topic", "info", "/chattr", status=1
     )
+
+
+def test_echo_with_the_options_of_ros2(running, start, manycore) -> None:
     once = ("topic", "echo", "--once", "--no-daemon", "--spin-time", "1")
     whole = manycore(*once, "/array", "--qos-profile", "default", "--flow-style").splitlines()
     assert whole == ["layout:", "  dim: []", "  data_offset: 0", "data: [1.0, 2.5]", "---"]
@@ -182,7 +185,7 @@ def test_calls_of_a_service_are_shown(running, start, manycore) -> None:
 SWITCH = ("/switch", "std_srvs/srv/SetBool")
 
 
-def test_parameters_with_the_options_of_ros2(running, manycore, tmp_path) -> None:
+def test_parameters_with_the_options_of_ros2(running, manycore) -> None:
     node = ("/filter", "--include-hidden-nodes", "--timeout", "1", "--no-daemon")
     assert manycore("param", "get", *node, "gain") == "Double value is: 2.5"
     assert manycore("param", "set", *node, "gain", "-1.5") == "Set parameter successful"
@@ -190,13 +193,20 @@ def test_parameters_with_the_options_of_ros2(running, manycore, tmp_path) -> Non
     prefixes = ("param", "list", "/filter", "--param-prefixes", "limits", "no")
     assert manycore(*prefixes, "--param-type") == "  limits.low (type: integer)"
     assert "requires an argument" in manycore("param", "list", "--param-prefixes", status=2)
+    missing = manycore("param", "get", "/filter", "gian", status=1)
+    assert missing == "manycore: Parameter not set: /filter has no gian; did you mean 'gain'?"
+    missing = manycore("param", "get", "filtr", "gain", "--timeout", "0", status=1)
+    assert missing == "manycore: Node not found: '/filtr'; did you mean '/filter'?"
+
+
+def test_parameters_are_loaded_with_and_without_wildcards(running, manycore, tmp_path) -> None:
     file = tmp_path / "filter.yaml"
     file.write_text(
         "/**: {ros__parameters: {gain: 1.0}}\n/filter: {ros__parameters: {name: right}}\n"
     )
     load = ("param", "load", "/filter", str(file))
     assert manycore(*load, "--no-use-wildcard") == "Set parameter name successful"
-    assert manycore("param", "get", "/filter", "gain") == "Double value is: -1.5"
+    assert manycore("param", "get", "/filter", "gain") == "Double value is: 2.5"
     assert manycore(*load).splitlines()[0] == "Set parameter gain successful"
     file.write_text("/**/filter: {ros__parameters: {gain: 1.0, gain: -.5, left_out: []}}\n")
     assert manycore(*load) == "Set parameter gain successful"
@@ -206,10 +216,6 @@ def test_parameters_with_the_options_of_ros2(running, manycore, tmp_path) -> Non
     )
     file.write_text("/filter:\n  ros__parameters: {gain: [1, a]}\n")
     assert f"{file}:2: expected a parameter file that rcl reads" in manycore(*load, status=2)
-    missing = manycore("param", "get", "/filter", "gian", status=1)
-    assert missing == "manycore: Parameter not set: /filter has no gian; did you mean 'gain'?"
-    missing = manycore("param", "get", "filtr", "gain", "--timeout", "0", status=1)
-    assert missing == "manycore: Node not found: '/filtr'; did you mean '/filter'?"
 
 
 def test_a_parameter_of_a_node_that_is_starting(start) -> None:
@@ -231,7 +237,7 @@ def two_of_a_name() -> None:
         rclpy.spin(node)
 
 
-def test_nodes_and_lifecycles_with_the_options_of_ros2(start, manycore) -> None:
+def test_nodes_with_the_options_of_ros2(start, manycore) -> None:
     start(peer_command(two_of_a_name)).wait_for("ready")
     lines = manycore("node", "list", "--no-daemon").splitlines()
     assert sorted(lines)[:2] == ["/twin", "/twin"]
@@ -240,6 +246,10 @@ def test_nodes_and_lifecycles_with_the_options_of_ros2(start, manycore) -> None:
     assert "Unable to find node '/twn'; did you mean '/twin'?" in manycore(
         "node", "info", "/twn", status=1
     )
+
+
+def test_lifecycles_with_the_options_of_ros2(start, manycore) -> None:
+    start(peer_command(two_of_a_name)).wait_for("ready")
     assert manycore("lifecycle", "nodes") == ""
     assert manycore("lifecycle", "nodes", "-a") == "/_managed"
     assert manycore("lifecycle", "get") == ""

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import signal
 import sys
+from collections.abc import Iterator
 
 import pytest
 import yaml
@@ -13,6 +14,7 @@ import yaml
 from support import IS_MANYCORE
 from support.nodes.ros import announce, peer_node
 from support.processes.commands import example_command, manycore_command, peer_command
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,
@@ -66,8 +68,13 @@ def _serve(node) -> None:
     rclpy.spin(node)
 
 
-def test_parameters_are_read_and_changed(start, manycore, tmp_path) -> None:
+@pytest.fixture
+def parameters(start):
     start(peer_command(with_parameters)).wait_for("ready")
+
+
+@pytest.mark.usefixtures("parameters")
+def test_parameters_are_listed_and_read(manycore) -> None:
     listed = manycore("param", "list").splitlines()
     assert listed[:4] == ["/filter:", "  gain", "  limits.low", "  name"]
     assert "  gain (type: double)" in manycore("param", "list", "filter", "--param-type")
@@ -75,10 +82,6 @@ def test_parameters_are_read_and_changed(start, manycore, tmp_path) -> None:
     assert "--filter: " in manycore("param", "list", "--filter", "[", status=2)
     assert manycore("param", "get", "/filter", "gain") == "Double value is: 2.5"
     assert manycore("param", "get", "/filter", "limits.low") == "Integer values are: [1, 2]"
-    assert manycore("param", "set", "/filter", "gain", "3.5") == "Set parameter successful"
-    assert manycore("param", "get", "/filter", "gain", "--hide-type") == "3.5"
-    refused = manycore("param", "set", "/filter", "gain", "99.0", status=1)
-    assert "Setting parameter failed: Parameter gain out of range" in refused
     assert manycore("param", "describe", "/filter", "gain").splitlines() == [
         "Parameter name: gain",
         "  Type: double",
@@ -89,11 +92,22 @@ def test_parameters_are_read_and_changed(start, manycore, tmp_path) -> None:
         "    Step: 0.5",
     ]
     dumped = yaml.safe_load(manycore("param", "dump", "/filter"))["/filter"]["ros__parameters"]
-    assert (dumped["gain"], dumped["limits"], dumped["name"]) == (3.5, {"low": [1, 2]}, "left")
-    assert "cannot be undeclared" in manycore("param", "delete", "/filter", "name", status=1)
+    assert (dumped["gain"], dumped["limits"], dumped["name"]) == (2.5, {"low": [1, 2]}, "left")
     none = ("param", "get", "none", "x", "--timeout", "0")
     assert "Node not found: '/none'" in manycore(*none, status=1)
 
+
+@pytest.mark.usefixtures("parameters")
+def test_parameters_are_set(manycore) -> None:
+    assert manycore("param", "set", "/filter", "gain", "3.5") == "Set parameter successful"
+    assert manycore("param", "get", "/filter", "gain", "--hide-type") == "3.5"
+    refused = manycore("param", "set", "/filter", "gain", "99.0", status=1)
+    assert "Setting parameter failed: Parameter gain out of range" in refused
+    assert "cannot be undeclared" in manycore("param", "delete", "/filter", "name", status=1)
+
+
+@pytest.mark.usefixtures("parameters")
+def test_parameters_are_loaded(manycore, tmp_path) -> None:
     file = tmp_path / "filter.yaml"
     file.write_text("/**: {ros__parameters: {gain: 1.5, name: right}}")
     assert manycore("param", "load", "/filter", str(file)).splitlines() == [
@@ -124,7 +138,7 @@ def fibonacci_by_steps() -> None:
         _serve(node)
 
 
-def test_actions_are_listed_and_get_goals(start, manycore) -> None:
+def test_actions_get_goals(start) -> None:
     server = start(peer_command(fibonacci_by_steps), 2)
     goal = ("/fibonacci", "test_msgs/action/Fibonacci")
     sender = start(manycore_command("action", "send_goal", "-f", *goal, "{order: 3}"))
@@ -142,6 +156,10 @@ def test_actions_are_listed_and_get_goals(start, manycore) -> None:
     result = lines.index("Result:")
     assert lines[result : result + 6] == ["Result:", "    sequence:", "- 0", "- 1", "- 1", "- 2"]
     assert lines[-1] == "Goal finished with status: SUCCEEDED"
+
+
+def test_actions_are_listed(start, manycore) -> None:
+    start(peer_command(fibonacci_by_steps), 2).wait_for("ready")
     assert manycore("action", "list", "-t") == "/fibonacci [test_msgs/action/Fibonacci]"
     assert manycore("action", "type", "/fibonacci") == "test_msgs/action/Fibonacci"
     assert manycore("action", "info", "/fibonacci", "-t").splitlines() == [
@@ -239,10 +257,18 @@ def test_echo_tells_of_lost_messages(start) -> None:
     assert "lost" not in silent.output
 
 
-def test_bandwidth_delay_and_load_of_a_topic(start, manycore) -> None:
+@pytest.fixture
+def posing(start) -> Iterator[Program]:
+    """Publish poses with stamps; afterwards check that Ctrl-C ends it well."""
     pose = ("/pose", "geometry_msgs/msg/PoseStamped")
     pub = start(manycore_command("topic", "pub", "-r", "50", *pose, "{header: auto}"))
     pub.wait_for("publishing #1")
+    yield pub
+    assert pub.stop() == 0
+
+
+@pytest.mark.usefixtures("posing")
+def test_bandwidth_and_delay_of_a_topic(start, manycore) -> None:
     watchers = [start(manycore_command("topic", verb, "/pose")) for verb in ("bw", "delay")]
     watchers[0].wait_for(r"^(\d+\.\d\d K|\d+ )B/s from \d+ messages$")
     watchers[0].wait_for(r"^\tMessage size mean: 0\.08 KB min: 0\.08 KB max: 0\.08 KB$")
@@ -251,11 +277,13 @@ def test_bandwidth_delay_and_load_of_a_topic(start, manycore) -> None:
     assert [watcher.stop() for watcher in watchers] == [0, 0]
     assert manycore("topic", "type", "/pose") == "geometry_msgs/msg/PoseStamped"
     assert manycore("topic", "find", "geometry_msgs/msg/PoseStamped") == "/pose"
+
+
+def test_load_of_topics_and_processes(start, manycore, posing) -> None:
     top = start(manycore_command("top", "--json"))
     moved = r'^\{.*"topic": "/pose", "messages_per_s": (?!0\.0,).*'
     load = json.loads(top.wait_for(moved).group())
     assert top.stop() == 0
     assert load["topics"][0]["topic"] == "/pose"
-    assert pub.pid in {process["pid"] for process in load["processes"]}
+    assert posing.pid in {process["pid"] for process in load["processes"]}
     assert "messages/s" in manycore("top", "--count", "1", "--period", "0.1")
-    assert pub.stop() == 0

@@ -63,7 +63,7 @@ def answer(link: str, method: str = "GET", **headers: str) -> tuple[int, str]:
             return error.code, error.read().decode()
 
 
-def test_only_its_own_page_is_answered(view, platform) -> None:
+def test_only_its_own_page_is_answered(view) -> None:
     _, link = view
     origin = link.rsplit("/", 2)[0]
     assert answer(link)[0] == 200
@@ -74,10 +74,19 @@ def test_only_its_own_page_is_answered(view, platform) -> None:
     assert answer(link, Origin="http://elsewhere.example")[0] == 403
     assert answer(link + "trace/start", "POST")[0] == 403
     assert answer(link + "live", Upgrade="websocket")[0] == 403
+
+
+def test_actions_wait_for_the_platform(view, platform) -> None:
+    _, link = view
+    origin = link.rsplit("/", 2)[0]
     for action in ("trace/start", "trace/stop", "parameters?node=/x"):
         status, text = answer(link + action, "POST", Origin=origin)
         waiting = f"waiting for platform {platform} to start"
         assert (status, json.loads(text)) == (409, {"error": waiting})
+
+
+def test_only_files_of_the_page_are_answered(view) -> None:
+    _, link = view
     assert answer(link + "page/main.js")[0] == 200
     for path in ("../server.py", "%2e%2e/server.py", "..%2fserver.py"):
         assert answer(link + f"page/{path}")[0] == 404

@@ -76,7 +76,7 @@ def test_a_plan_has_all_nodes_and_comments_on_what_is_missing(plan: Path) -> Non
     ]
 
 
-def test_showing_a_plan_reports_what_is_missing_and_running_it_fails(plan: Path) -> None:
+def test_checking_a_plan_reports_what_is_missing(plan: Path) -> None:
     checked = manycore("map", "check", str(plan))
     assert checked.exit_code == 0
     assert checked.output.splitlines()[-2] == "a plan: 5 of 6 nodes cannot run here"
@@ -86,6 +86,9 @@ def test_showing_a_plan_reports_what_is_missing_and_running_it_fails(plan: Path)
         True,
         ["/left/driver", "/right/driver", "/urdf", "/moveit", "/box"],
     )
+
+
+def test_showing_a_plan_reports_what_is_missing(plan: Path) -> None:
     shown = json.loads(manycore("map", "show", "--json", str(plan)).output)["nodes"]
     assert [bool(node["command"]) for node in shown] == [True] + [False] * 5
     assert shown[1]["missing"].startswith("expected the package 'absent'")
@@ -93,6 +96,9 @@ def test_showing_a_plan_reports_what_is_missing_and_running_it_fails(plan: Path)
         "that it is not installed: pip install ./absent"
         in manycore("map", "show", str(plan)).output
     )
+
+
+def test_running_a_plan_fails(plan: Path) -> None:
     assert manycore("run", str(plan)).exit_code == EXIT_BAD_INPUT
     with pytest.raises(MapfileError) as caught:
         resolve(load_mapfile(plan))

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -13,10 +15,14 @@ from rmw_manycore_py.ndt.maps.map_tiles import open_map, write_tiles
 pytestmark = pytest.mark.unit
 
 
-def test_an_area_is_loaded_again_only_where_other_tiles_are_needed(tmp_path):
+@pytest.fixture
+def area(tmp_path: Path) -> MapArea:
     points = np.random.default_rng(1).uniform((0, 0, 0), (200, 20, 5), (20000, 3)).astype("f4")
     write_tiles(tmp_path, points, 20.0, ".npz")
-    area = MapArea(open_map(tmp_path), radius_m=22.0, update_distance_m=5.0)
+    return MapArea(open_map(tmp_path), radius_m=22.0, update_distance_m=5.0)
+
+
+def test_an_area_is_loaded_again_only_where_other_tiles_are_needed(area: MapArea):
     assert area.distance_m(50.0, 10.0) == np.inf
     first = area.update(50.0, 10.0)
     assert (first[:, 0].min() > 19.9, first[:, 0].max() < 80.1) == (True, True)
@@ -28,7 +34,11 @@ def test_an_area_is_loaded_again_only_where_other_tiles_are_needed(tmp_path):
     np.testing.assert_array_equal(area.update(50.0, 10.0), first)
     moved = area.update(90.0, 10.0)
     assert moved[:, 0].min() > 59.9
-    files = area.update_files(130.0, 10.0)  # for another process to read
+
+
+def test_the_files_of_an_area_are_named_for_another_process(area: MapArea):
+    area.update(90.0, 10.0)
+    files = area.update_files(130.0, 10.0)
     assert files.read({})[:, 0].min() > 99.9
     assert area.update_files(131.0, 10.0) is None
 
