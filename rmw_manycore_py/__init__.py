@@ -10,8 +10,7 @@ with manycore.run("map.yaml") as active:
 ```
 
 Two packages stand beside it: `rmw_manycore_py.transport` joins a platform without ROS, and
-`rmw_manycore_py.ndt` matches LiDAR scans. What is named here is loaded when it is first used, and
-nothing of it loads rclpy.
+`rmw_manycore_py.ndt` matches LiDAR scans. The names here are loaded on first use, without rclpy.
 """
 
 from __future__ import annotations
@@ -68,7 +67,7 @@ _HOMES = {name: module for module, names in _MODULES.items() for name in names}
 
 
 def __getattr__(name: str) -> Any:
-    """Load what is used for the first time."""
+    """Load a name on its first use."""
     if name in _HOMES:
         from importlib import import_module
 

@@ -67,7 +67,7 @@ def _give_threads(executors: ModuleType) -> None:
     """Have the executor of `rclpy.spin` serve callbacks on threads."""
 
     class PerTopicExecutor(executors.MultiThreadedExecutor):  # type: ignore[misc,name-defined]
-        """An executor whose callbacks do not wait for each other but where their groups say so."""
+        """An executor whose callbacks wait for each other only where their groups demand it."""
 
         def __init__(self, *, context: Any = None) -> None:
             super().__init__(MAX_THREADS, context=context)

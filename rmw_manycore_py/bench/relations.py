@@ -48,7 +48,7 @@ class Relation:
 
 @dataclass(frozen=True)
 class Claim(Generic[T]):
-    """A relation to look at. `test` raises KeyError where what it is about was not measured."""
+    """A relation to check. `test` raises KeyError where a time that it needs was not measured."""
 
     name: str
     statement: str
@@ -56,12 +56,12 @@ class Claim(Generic[T]):
     parameters: tuple[str, ...] = ()
 
     def measured(self, times: T) -> Relation:
-        """Look at measured times."""
+        """Check measured times."""
         where, found = self.test(times)
         return Relation(self.name, self.statement, where == 0, found, "measured")
 
     def modelled(self, default: T, others: Iterable[T]) -> Relation:
-        """Look at a model's times for the default parameters, and for other settings."""
+        """Check a model's times for the default parameters, and for other settings."""
         where, found = self.test(default)
         sides = [self.test(times)[0] for times in others]
         basis: Basis = "derived" if set(sides) <= {where} else "fitted"

@@ -38,7 +38,7 @@ class End(Closing):
         self._link.close()
 
     def _take_notes(self) -> None:
-        """Handle what the other side has told."""
+        """Handle the notes of the other side."""
         self._link.require_open()
         with system_errors(self._subject):
             while note := self._link.take_note():

@@ -12,7 +12,7 @@ from rmw_manycore_py.transport.errors import TransportError
 
 
 class PeerGoneError(TransportError, ConnectionError):
-    """The process of the other side has closed its end, or was killed; the text says which."""
+    """The process of the other side has closed its end, or was killed; the text names which."""
 
 
 @contextmanager

@@ -23,12 +23,12 @@ from rmw_manycore_py.transport.errors import TransportError
 
 
 class NoteKind(IntEnum):
-    """What a side tells the other one."""
+    """Kind of a note from one side to the other."""
 
     PIPE = 1  # message: value = priority; with the pipe's read end
     RECEIVED = 2  # synchronous message: value = its number
     BUFFER = 3  # session: value = size; with the receive buffer
-    MOVED = 4  # session: value = size of what is in the receive buffer
+    MOVED = 4  # session: value = bytes in the receive buffer
     RELEASED = 5  # session: the receive buffer may be written again
     SEGMENT = 6  # segment: value = size; with the memory, unless it is empty
     CLOSED = 7  # nothing more will come: the side was closed
@@ -96,7 +96,7 @@ class Link:
             else:
                 socket.send_fds(self._socket, note, [descriptor])
         except ConnectionError:
-            return False  # take_note() finds out, after what the peer has said before
+            return False  # take_note() reports it, after the peer's earlier notes
         except OSError as error:
             if error.errno not in _NO_ROOM:
                 raise
@@ -127,7 +127,7 @@ class Link:
         return wait_for_any(self.descriptors, deadline)
 
     def close(self) -> None:
-        """Tell the peer that nothing more will come; idempotent."""
+        """Notify the peer that nothing more will come; idempotent."""
         if self.is_open:
             if not self.is_gone:
                 self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 2 * _ROOM_BYTES)

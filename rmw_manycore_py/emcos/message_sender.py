@@ -73,7 +73,7 @@ class MessageSender(End):
         :param synchronous: wait until the other side has received it.
         :param timeout_s: limit for all of a synchronous send, in seconds.
         :raises TransportTimeoutError: if a synchronous message was not received within the timeout.
-            The text says whether it was dropped, or is in the pipe and may still be received.
+            The text states whether it was dropped, or is in the pipe and may still be received.
         :raises PeerGoneError: if the other process has ended, or closed its end.
         :raises TransportError: if a message can never fit in the pipe, or an argument is invalid.
         """
@@ -92,7 +92,7 @@ class MessageSender(End):
             return self._send_now(pipe, view)
 
     def close(self) -> None:
-        """Close this end; what is in the pipes can still be received. Idempotent."""
+        """Close this end; messages in the pipes can still be received. Idempotent."""
         super().close()
         for priority in list(self._pipes):
             self._pipes.pop(priority).close()

@@ -89,7 +89,7 @@ def packets_of(data: memoryview, number: int, is_synchronous: bool) -> Iterator[
 
 
 def parsed(packet: bytes) -> Packet:
-    """Return what a packet says."""
+    """Return the fields of a packet."""
     number, size, offset, length, is_synchronous = _HEAD.unpack_from(packet)
     body = memoryview(packet)[_HEAD.size : _HEAD.size + length]
     return Packet(number, size, offset, bool(is_synchronous), body)

@@ -2,8 +2,8 @@
 """How the two sides of a transfer find each other, in either order.
 
 Each tries to bind an abstract socket address made from the name. The first one listens, the second
-one finds the address in use and connects. The kernel frees the address with its process. Both say
-what they are; a peer that ends before it has said so is no peer, and the search goes on.
+one finds the address in use and connects. The kernel frees the address with its process. Both send
+a hello; a peer that ends before it has sent one does not count, and the search goes on.
 """
 
 from __future__ import annotations

@@ -88,7 +88,7 @@ class SessionSender(SessionEnd):
         :param timeout_s: limit of a synchronous send, in seconds; None waits indefinitely.
         :return: False if the last transfer was not moved yet: this one is dropped, and counted.
         :raises TransportTimeoutError: if a synchronous transfer was not moved within the timeout.
-            The text says whether it was not begun, or will still be moved.
+            The text states whether it was not begun, or will still be moved.
         :raises PeerGoneError: if the other process has ended, or closed its end.
         """
         size = self.size_bytes if size_bytes is None else size_bytes

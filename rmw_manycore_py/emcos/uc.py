@@ -2,7 +2,7 @@
 """The UC of one session: a thread that copies the send buffer to the receive buffer.
 
 ```
- idle ── request ──► waits until the receive buffer is released ──► copies ──► tells MOVED ──► idle
+ idle ── request ──► waits until the receive buffer is released ──► copies ──► sends MOVED ──► idle
                      └── the peer has gone, or close() ──► idle, nothing was moved
 ```
 

@@ -119,7 +119,7 @@ class _IdlFile:
         )
 
     def _line_of(self, error: Exception) -> int:
-        """Return the line of the smallest part of the file that rosidl was looking at."""
+        """Return the line of the smallest part of the file that rosidl was processing."""
         for frame, _ in reversed(list(traceback.walk_tb(error.__traceback__))):
             values = list(frame.f_locals.values())
             names = [value.namespaced_type.name for value in values if isinstance(value, Structure)]

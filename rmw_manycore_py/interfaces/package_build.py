@@ -169,7 +169,7 @@ def _dependencies(request: generator.Request) -> dict[str, str]:
 
 
 def _install(part: Part, request: generator.Request, prefix: Path) -> None:
-    """Install what is not compiled: Python, headers, definitions, index entries."""
+    """Install the files that are not compiled: Python, headers, definitions, index entries."""
     package = part.package
     python = request.place(generator.PYTHON)
     _copy(python, prefix / "python" / package, "*/*.py")

@@ -190,5 +190,5 @@ def run(mapfile: Mapfile | Path | str, *, on_output: OnOutput | None = None) -> 
     :raises ManycoreError: if the platform is running already, or a node cannot be started.
     """
     loaded = mapfile if isinstance(mapfile, Mapfile) else load_mapfile(mapfile)
-    resolve(loaded)  # the supervisor could only say what is wrong, not where
+    resolve(loaded)  # the supervisor could report the problem, but not its line
     return ActiveRun(loaded.path, on_output)

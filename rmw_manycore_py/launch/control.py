@@ -99,7 +99,7 @@ class Control:
             client.close()
 
     def _turn_away(self) -> None:
-        """Refuse a client by the spare descriptor: waiting, it would wake the loop for ever."""
+        """Refuse a client by the spare descriptor; queued, it would keep the loop awake."""
         self._spare.close()
         with suppress(OSError):
             client, _ = self._listener.accept()

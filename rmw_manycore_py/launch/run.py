@@ -108,7 +108,7 @@ class Run:
     ) -> int:
         try:
             return runner.run(inbox, duration_s, all_started)
-        except Exception as error:  # in the background, only the log can tell
+        except Exception as error:  # in the background, only the log shows it
             report(Notice(f"the supervisor failed: {type(error).__name__}: {error}"))
             raise
 

@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """A run as the child of a Python program, which `ActiveRun` is the parent's side of.
 
-Tells on standard output, as JSON lines, each event of the run, that all nodes were started
+Prints, as JSON lines, each event of the run, that all nodes were started
 ({"event": "up"}), or why there is none ({"error": ...}). It stops at a signal, and once its
 standard input ends: with the parent, however that ends.
 """

@@ -81,7 +81,7 @@ def _of_core(loads: Loads, cell: Cell) -> tuple[Mark, Mark]:
     return _core_marks(bool(cell.members), level(cpu, CPU_LEVELS), cell.has_dead, percent)
 
 
-# A mark depends on little, and most elements look as they did before: each mark is made once.
+# Marks depend on few values, and most elements stay unchanged: each mark is made once.
 @lru_cache(maxsize=1024)
 def _core_marks(is_used: bool, cpu_level: int, is_dead: bool, percent: str) -> tuple[Mark, Mark]:
     """Return the marks of a core and of its CPU usage."""

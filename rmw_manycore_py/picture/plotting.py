@@ -16,7 +16,7 @@ def load_figure() -> type[Figure]:
 
     Call it before a long run that ends with a plot.
 
-    :raises ManycoreError: if matplotlib is not installed; says how to install it.
+    :raises ManycoreError: if matplotlib is not installed; the text has the command to install it.
     """
     try:
         from matplotlib import figure

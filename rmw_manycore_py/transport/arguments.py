@@ -55,5 +55,5 @@ class Deadline:
         self._end_s = None if timeout_s is None else time.monotonic() + timeout_s
 
     def left_s(self) -> float | None:
-        """Return what is left of it, None where it never comes."""
+        """Return the time until then; None if it never comes."""
         return None if self._end_s is None else max(self._end_s - time.monotonic(), 0.0)

@@ -16,7 +16,7 @@ IN_USE = (
 
 
 class TransportError(ManycoreError):
-    """A platform, topic or message does not meet the request; the text says what to do."""
+    """A platform, topic or message does not meet the request; the text has the remedy."""
 
 
 class TransportTimeoutError(TransportError, TimeoutError):

@@ -2,10 +2,10 @@
 """What the error of a pose is made of: the matcher's own, the guess's rest, the reference's.
 
 The reference poses of a recording have errors of their own. Of three poses of one scan whose errors
-are independent, the distances between them tell each one's: with d_ab^2 the mean square of the
-distance between a and b, the mean square error of a is (d_ab^2 + d_ac^2 - d_bc^2) / 2. The three
-are the reference, our pose in a map of every fourth scan, and that of ICP in a map of other scans.
-References are also refined (refined.py): the surfaces of points that were not aligned tell whether
+are independent, the distances between them yield the error of each: with d_ab^2 the mean square of
+the distance between a and b, the mean square error of a is (d_ab^2 + d_ac^2 - d_bc^2) / 2. They are
+the reference, our pose in a map of every fourth scan, and that of ICP in a map of other scans.
+References are also refined (refined.py): the surfaces of points that were not aligned show whether
 that was an improvement. Streets have exact poses.
 """
 

@@ -39,7 +39,7 @@ Align = Callable[[ArrayLike, Matrix], Matrix]
 
 @dataclass(frozen=True)
 class Place:
-    """Where scans are looked for: a map, and scans (n, 3) with their poses T_map_sensor.
+    """World to register in: a map, and scans (n, 3) with their poses T_map_sensor.
 
     :param name: "" for the recorded drive.
     """

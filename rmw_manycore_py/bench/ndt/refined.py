@@ -2,7 +2,7 @@
 """Better reference poses of a recording, and a measure of poses that needs no reference.
 
 Each scan is aligned to a map of the scans of the other parity, at fine voxels, and the maps are
-made anew from the poses found. Half of each scan's points are aligned; the other half tells whether
+made anew from the poses found. Half of each scan's points are aligned; the other half shows whether
 that was an improvement: the better the poses, the thinner the surfaces on which it lies.
 """
 

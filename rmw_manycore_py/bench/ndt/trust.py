@@ -174,7 +174,7 @@ def chosen(cases: Sequence[Case]) -> Shares:
 class Outcome:
     """What becomes of a wrong pose.
 
-    :param is_let_out: it is published, whatever its covariance says.
+    :param is_let_out: it is published, with any covariance.
     :param misleads: it is published with a covariance that does not cover its error.
     """
 

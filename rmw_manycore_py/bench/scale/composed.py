@@ -30,7 +30,7 @@ TURNS = 3
 
 @dataclass(frozen=True)
 class Ring:
-    """The nodes among which a message circulates, and what is asked about them."""
+    """Nodes among which a message circulates, and the figures measured on them."""
 
     processes: int
     hop: str

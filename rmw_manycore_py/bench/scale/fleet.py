@@ -32,7 +32,7 @@ class Fleet:
 
     @contextmanager
     def required(self) -> Iterator[None]:
-        """Tell of a process that ended early, not of what failed without it."""
+        """Report a process that ended early instead of the failure that followed from it."""
         try:
             yield
         except ManycoreError:

@@ -21,7 +21,7 @@ _ARRAY = re.compile(r"([\w/]+)(?:<\d+>)?\[(\d+)\]")
 
 @dataclass(frozen=True)
 class Shown:
-    """Limits on what is shown of a message; None shows all."""
+    """Limits on the parts of a message that are shown; None shows all."""
 
     length: int | None = None
     arrays: bool = True

@@ -48,7 +48,7 @@ def judge(
     """Judge the return code (negative signal number, as in subprocess) of a node in `state`.
 
     If an interrupt ends Python other than by the signal, the status is 1 and only the last lines
-    tell why. A supervised process that ends before it `came_up` has failed.
+    show why. A supervised process that ends before it `came_up` has failed.
     """
     asked = state in (NodeState.INTERRUPTED, NodeState.TERMINATED)
     if asked and return_code == 1 and _was_interrupted(last_lines):
@@ -67,7 +67,7 @@ def judge(
 
 
 def is_rclpys(traceback: Sequence[str]) -> bool:
-    """Return whether the last lines are what rclpy makes of some interrupts."""
+    """Return whether the last lines are an error that rclpy raises for some interrupts."""
     last_line = next(reversed(traceback), "")
     if _RCL.fullmatch(last_line) or _NOT_INITIALIZED.fullmatch(last_line):
         return True

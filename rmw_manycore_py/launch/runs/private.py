@@ -33,7 +33,7 @@ def make_private(directory: Path, below: Path) -> None:
 
 
 def check_own(directory: Path) -> None:
-    """Raise a ManycoreError if another user can replace a directory, or what is in it.
+    """Raise a ManycoreError if another user can replace a directory or its contents.
 
     It may be missing: then this is a check of the parent that exists.
     """
@@ -41,7 +41,7 @@ def check_own(directory: Path) -> None:
         _check_parent(next((one for one in directory.parents if one.exists()), directory))
         status = directory.lstat()
     except OSError:
-        return  # missing, or inaccessible: its use will tell
+        return  # missing or inaccessible: using it reports the error
     if status.st_uid != os.geteuid() or stat.S_ISLNK(status.st_mode) or _is_writable(status):
         raise _refusal(directory, status)
 

@@ -18,7 +18,7 @@ class Mapfile:
     """A mapfile that is valid in itself; `resolve` checks whether its executables exist.
 
     :param path: the file.
-    :param sections: what it says, section by section.
+    :param sections: its contents, section by section.
     :param topology: clusters and cores of the platform that it describes.
     :param document: where in the file each key stands, for errors.
     :param notices: what the user should know, although nothing is wrong.

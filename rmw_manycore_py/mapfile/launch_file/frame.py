@@ -34,7 +34,7 @@ def is_launch_file(frame: FrameType) -> bool:
 
 
 def is_in_try(frame: FrameType) -> bool:
-    """Return whether a frame is in the body of a `try`: the code handles what is missing."""
+    """Return whether a frame is in the body of a `try`: the code handles the error."""
     line = frame.f_lineno
     return any(first <= line <= last for first, last in _tries(frame.f_code.co_filename))
 

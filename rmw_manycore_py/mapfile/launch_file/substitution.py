@@ -74,7 +74,7 @@ def perform(context: LaunchContext, value: Any) -> str:
 
 
 def text_or_missing(context: LaunchContext, value: Any) -> str:
-    """Evaluate as `perform` does, but return a placeholder for what is missing here."""
+    """Evaluate as `perform` does, but return a placeholder where that is unavailable here."""
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
     if isinstance(value, Substitution):

@@ -97,7 +97,7 @@ def given_values(
 
 
 def read_all(sources: Iterable[Source], launched: Launched | None = None) -> Sections:
-    """Return the sections that rcl makes of a command line.
+    """Return the sections that rcl reads from a command line.
 
     :param launched: node of the launch file, whose own ROS arguments come first.
     :raises MapfileError: for a file that rcl refuses.

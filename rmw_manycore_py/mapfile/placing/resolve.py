@@ -42,7 +42,7 @@ def resolve(
     """Resolve everything a mapfile refers to.
 
     :param occupied: cores used by nodes of other runs on the platform.
-    :param to_start: false to look only: then nodes of a plan need not be installed.
+    :param to_start: False to inspect only: then nodes of a plan need not be installed.
     :raises MapfileError: for everything that does not exist.
     """
     launch = read_launch(mapfile)

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NodeStart:
-    """What the mapfile, the launch file and the source of a node say about it."""
+    """Settings of a node from the mapfile, the launch file and its source."""
 
     full_name: str
     program: Program

@@ -139,7 +139,7 @@ def _number(word: str) -> str:
 
 def _ascii(file: IO[bytes], header: _Header, axes: list[int]) -> list[Column]:
     with warnings.catch_warnings():
-        warnings.simplefilter("error")  # of what is no number
+        warnings.simplefilter("error")  # for words that are not numbers
         try:
             found = np.fromstring(file.read().decode("ascii"), sep=" ")
         except DeprecationWarning as error:

@@ -58,7 +58,7 @@ class Alignment:
     :param covariance: (6, 6) of x, y, z [m], roll, pitch, yaw [rad].
     :param iterations: number of steps.
     :param converged: False if the alignment hit the iteration limit or ended away from a maximum;
-        ``why`` says which. Says nothing about whether the pose is right: see ``ndt.trust``.
+        ``why`` names which. True does not imply that the pose is right: see ``ndt.trust``.
     :param share_in_map: fraction of finite points with voxels in their neighbourhood, 0 to 1.
     :param is_degenerate: the score has no maximum at the pose, so the pose is meaningless.
     :param xy_spread_m2: (2, 2) covariance of x and y from the curvature of the score, times the

@@ -80,7 +80,7 @@ class CutBag:
 
 
 def open_cut_bag(files: list[Path]) -> CutBag | None:
-    """Open what is left of a bag; None if there is no message."""
+    """Open the remains of a bag; None if there is no message."""
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     is_ros1 = any(file.suffix == ".bag" for file in files)
@@ -95,7 +95,7 @@ def open_cut_bag(files: list[Path]) -> CutBag | None:
 
 
 def _sqlite(file: Path, closing: ExitStack) -> Iterator[_Stored]:
-    """Yield what is in a file of rosbag2: its tables `topics` and `messages`."""
+    """Yield the rows in a file of rosbag2: its tables `topics` and `messages`."""
     try:
         pages = SqlitePages(closing.enter_context(file.open("rb")))
     except (OSError, ValueError):

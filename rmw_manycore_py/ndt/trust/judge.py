@@ -32,7 +32,7 @@ COVERED_M, COVERED_RAD = 0.5, np.radians(3.0)  # error covered without a weak ax
 class Verdict:
     """Judgement of a pose.
 
-    :param why: "" for a believed pose, else what is wrong.
+    :param why: reason to reject the pose; "" for a believed one.
     :param is_sure: believed, and confirmed by the previous poses.
     :param level: the required score.
     :param expected: expected pose of the vehicle, if known.
@@ -105,8 +105,8 @@ class PoseJudge:
     def may_look_again(self, verdict: Verdict) -> bool:
         """Return whether a refused result may be replaced by one from farther off.
 
-        Motion tells whether that one is right. For a first pose only a search does, which finds
-        whether it stands out.
+        Motion confirms or refutes that one. For a first pose only a search does, by whether the
+        pose stands out.
         """
         return verdict.expected is not None or not self._searches
 

@@ -67,12 +67,12 @@ def pose_message(place: Place, header: Any) -> Any:
 
 
 def bytes_field(values: NDArray[np.uint8]) -> array[int]:
-    """Return what a field uint8[] takes without looking at each element."""
+    """Return values that a field uint8[] takes without checking each element."""
     return array("B", values.tobytes())
 
 
 def floats_field(values: NDArray[np.float32]) -> array[float]:
-    """Return what a field float32[] takes without looking at each element."""
+    """Return values that a field float32[] takes without checking each element."""
     return array("f", values.tobytes())
 
 

@@ -40,7 +40,7 @@ Variant = dict[str, Any]  # a mapfile's content
 
 
 def installed(name: str) -> Variant:
-    """Return what an installed mapfile says, whether it is a list or not."""
+    """Return the contents of an installed mapfile, YAML or list."""
     path = find_mapfile(name)
     if path is None:
         raise ManycoreError(f"mapfiles/{name} is not installed")

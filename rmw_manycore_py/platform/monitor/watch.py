@@ -26,7 +26,7 @@ _TRACE_PERIOD_S = 1.0
 
 @dataclass(frozen=True)
 class Look:
-    """Snapshot of what is shown of a platform."""
+    """Snapshot of a platform, with all that the tools show."""
 
     loads: Loads  # over WINDOW_S
     dead: tuple[Member, ...]  # killed or crashed, not restarted

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is played: topics, their names, and the time span."""
+"""Program of a playback: topics, their names, and the time span."""
 
 from __future__ import annotations
 

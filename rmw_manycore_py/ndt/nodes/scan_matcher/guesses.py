@@ -62,7 +62,7 @@ class Guesses:
 
         If guesses follow results, a correction makes the next guess jump, which would count as
         motion; averaging over several periods reduces its effect. A guess that no vehicle reaches
-        from the one before it begins a new drive: the motion before it is not looked at.
+        from the one before it begins a new drive: the motion before it is ignored.
         """
         drive = self._buffer.drive_until(stamp_s, stamp_s - KEPT_S, JUMP_M, MAX_SPEED_M_S)
         old = [guess for guess in drive if guess.stamp_s <= stamp_s - MOTION_S]

@@ -30,7 +30,7 @@ class _Watch:
         infos = self._node.get_publishers_info_by_topic(self._topic)
         present = {info.node_name for info in infos}
         gone = ", ".join(sorted(self._known - present))
-        if not gone and event.not_alive_count_change > 0:  # the event does not say which one
+        if not gone and event.not_alive_count_change > 0:  # the event does not name the publisher
             gone = " or ".join(sorted(self._known)) or "a publisher"
         if gone:
             self._node.get_logger().warning(f"{self._topic}: {gone} is gone")

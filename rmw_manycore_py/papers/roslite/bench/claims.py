@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What section IV of ROS-lite says about its figures, as functions of medians."""
+"""Claims of section IV of ROS-lite about its figures, as functions of medians."""
 
 from __future__ import annotations
 

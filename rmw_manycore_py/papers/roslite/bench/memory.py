@@ -28,7 +28,7 @@ _LIBRARY_FILE = "librmw_manycore.so"
 
 
 def measure(run: Run) -> list[Result]:
-    """Run the pipeline and look at the cluster once."""
+    """Run the pipeline and read the state of the cluster once."""
     if not run.wants(f"{CODE}: {LIBRARY}") and not run.wants(f"{SMEM}: {LEFT}"):
         return []
     run.note(CODE)

@@ -37,7 +37,7 @@ class DriveLog:
             self.planned_ns.setdefault(stamp_ns, now_ns)
 
     def figures(self) -> DriveFigures:
-        """Return what is found, in ms and m."""
+        """Return the figures of the drive, in ms and m."""
         answered = {stamp: at for stamp, at in self.commands_ns.items() if at is not None}
         return DriveFigures(
             scans=len(self.commands_ns),

@@ -15,7 +15,7 @@ _FAULT = re.compile(r"(?P<stop>stop:)?(?P<target>[^@]+)@(?P<after>\d+(\.\d+)?)")
 
 
 class Kind(Enum):
-    """What is done to the target."""
+    """Action on the target."""
 
     KILL = "kill -9"
     STOP = "SIGSTOP"

@@ -13,7 +13,7 @@ from typing import Any
 
 
 class Events:
-    """Simulated time in cycles, and what is due."""
+    """Simulated time in cycles, and the events that are due."""
 
     def __init__(self) -> None:
         self.now = 0.0

@@ -66,7 +66,7 @@ class Parameters:
     ddr_cycles: float = assumed(30, 200)
     # 64 data lines, from DDR3-1066 at half of its peak to DDR3-1600 near its peak.
     ddr_bytes_per_s: float = assumed(4.3e9, 12e9)
-    # What is left of that rate for packets of 248 bytes that four DMA engines write in turns.
+    # Share of that rate for packets of 248 bytes that four DMA engines write in turns.
     ddr_scatter_share: float = assumed(0.25, 1)
     multiply_add_cycles: float = assumed(2, 8)
 

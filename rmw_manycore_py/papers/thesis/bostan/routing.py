@@ -76,7 +76,7 @@ def _steps(start: int, end: int) -> list[int]:
 
 
 def can_deadlock(routes: Iterable[Sequence[Node]]) -> bool:
-    """Tell whether packets on these routes could wait for each other in a circle.
+    """Return whether packets on these routes could wait for each other in a circle.
 
     They can when the links, each followed by the next one of some route, form a cycle (Dally).
     """

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What section 4.2 of the thesis says about its figures, as functions of times."""
+"""Claims of section 4.2 of the thesis about its figures, as functions of times."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Times(Protocol):
         """Return the time of a product."""
 
     def lost(self, place: Place) -> float:
-        """Return what is lost while four clusters write their tiles of C into a memory."""
+        """Return the loss while four clusters write their tiles of C into a memory."""
 
 
 def _in_one_place(times: Times, place: Place, is_cached: bool, threads: int = 1) -> float:

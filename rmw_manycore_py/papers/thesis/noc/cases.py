@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is transferred: sizes, methods, memories and routes, and how results are named."""
+"""Transfers that are measured: sizes, methods, memories and routes, and the names of results."""
 
 from __future__ import annotations
 

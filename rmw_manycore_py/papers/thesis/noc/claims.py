@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What section 4.1.2 of the thesis says about its figures, as functions of times."""
+"""Claims of section 4.1.2 of the thesis about its figures, as functions of times."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Times(Protocol):
         """Return the time of a transfer."""
 
     def lost(self, flow_control: str) -> float:
-        """Return what is lost while four clusters write to the DDR."""
+        """Return the loss while four clusters write to the DDR."""
 
 
 def _main(times: Times, method: Method, source: MemoryKind) -> Case:

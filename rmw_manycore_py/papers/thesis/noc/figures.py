@@ -24,7 +24,7 @@ Draw = Callable[[Sequence[Result], Path], list[Path]]
 
 
 def figures(setting: Setting, sizes: Sequence[int], where: str) -> Draw:
-    """Return what draws the figures of which there are results."""
+    """Return the function that draws the figures of which there are results."""
 
     def draw(results: Sequence[Result], directory: Path) -> list[Path]:
         samples = {(r.question, r.contender): r.samples for r in results}

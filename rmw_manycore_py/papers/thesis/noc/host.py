@@ -4,7 +4,7 @@
 | the thesis | here |
 |---|---|
 | Tx | the sender's core copies |
-| UC | a process on another core copies, as the sender tells it to |
+| UC | a process on another core copies at the sender's request |
 | IO DDR | a buffer that was flushed from all caches |
 | IO SMEM, CC SMEM | a buffer that the sender has just written |
 """
