@@ -7,12 +7,13 @@ import json
 from pathlib import Path
 
 import pytest
-from forked import forked_manycore
-from made_ctf import made, write_trace
-from support import IS_MANYCORE, manycore_command
 
 from rmw_manycore_py.profile.files import load
 from rmw_manycore_py.profile.model import Callback, Profile
+from support import IS_MANYCORE
+from support.generated.ctf import made, write_trace
+from support.peers.programs import forked_manycore
+from support.processes.commands import manycore_command
 
 pytestmark = [
     pytest.mark.integration,

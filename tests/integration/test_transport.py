@@ -105,61 +105,6 @@ def test_an_array_that_outlives_its_message_stays_whole(ends: Ends) -> None:
         assert message.array[0] == 99.0
 
 
-@pytest.mark.parametrize("dtype", TYPES, ids=str)
-@pytest.mark.parametrize("shape", [(3,), (40, 50, 60), (2, 0)], ids=str)
-def test_an_array_is_filled_where_it_is_published(
-    member: transport.Member, dtype: np.dtype[Any], shape: tuple[int, ...]
-) -> None:
-    subscription = member.subscription("/arrays", dtype)
-    publisher = member.publisher("/arrays", dtype)
-    sent = np.arange(np.prod(shape)).astype(dtype).reshape(shape)
-    with publisher.lend(shape) as loan:
-        assert loan.array.flags.aligned
-        loan.array[...] = sent
-    assert loan.sequence == 1
-    with subscription.take(TIMEOUT_S) as message:
-        assert np.array_equal(message.array, sent)
-        assert message.array.shape == shape
-
-
-def test_a_publisher_goes_on_beside_its_loans(ends: Ends) -> None:
-    publisher, subscription = ends
-    with publisher.lend(20_000) as first, publisher.lend(20_000) as second:
-        first.array[:] = 1.0
-        second.array[:] = 2.0
-        publisher.publish(np.full(20_000, 3.0, np.float32))
-        assert np.all(subscription.take_copy(TIMEOUT_S) == 3.0)
-    assert (second.sequence, first.sequence) == (2, 3)
-    assert np.all(subscription.take_copy(TIMEOUT_S) == 1.0)
-
-
-def test_a_loan_that_fails_publishes_nothing(ends: Ends) -> None:
-    publisher, subscription = ends
-    with pytest.raises(ZeroDivisionError), publisher.lend(20_000) as loan:
-        loan.array[0] = 1 / 0
-    assert subscription.try_take() is None
-    with pytest.raises(transport.TransportError, match="the loan is over: fill its array inside"):
-        _ = loan.array
-    assert publisher.publish(np.ones(3, np.float32)) == 1
-
-
-def test_an_array_that_outlives_its_loan_is_not_published(ends: Ends) -> None:
-    publisher, subscription = ends
-    with (
-        pytest.raises(transport.MessageInUseError, match="still in use, so it is not published"),
-        publisher.lend(20_000) as loan,
-    ):
-        kept = loan.array[:10]
-    kept[:] = 1.0
-    assert subscription.try_take() is None
-
-
-@pytest.mark.parametrize("shape", [-1, (2, -1), "x", 1.5, (), None], ids=repr)
-def test_a_loan_of_no_shape_is_refused(ends: Ends, shape: Any) -> None:
-    with pytest.raises(transport.TransportError, match="shape|dimensions"):
-        ends[0].lend(shape)
-
-
 def test_one_message_is_taken_at_a_time(ends: Ends) -> None:
     publisher, subscription = ends
     publisher.publish(np.ones(3, np.float32))

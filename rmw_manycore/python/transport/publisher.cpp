@@ -106,8 +106,9 @@ int BoundLoan::add_view(PyObject * self, Py_buffer * view, int flags) noexcept {
   }
   constexpr int is_read_only = 0;
   uint8_t * const body = loan_->data() + head_bytes_;
-  if (PyBuffer_FillInfo(
-        view, self, body, static_cast<Py_ssize_t>(body_bytes_), is_read_only, flags) != 0) {
+  if (
+    PyBuffer_FillInfo(
+      view, self, body, static_cast<Py_ssize_t>(body_bytes_), is_read_only, flags) != 0) {
     return -1;
   }
   ++views_;

@@ -94,8 +94,7 @@ uint64_t Publisher::Impl::publish(const Written & written, const WakeSet & spare
   EndpointCounters & counters = entry.counters;
   counters.messages.store(sequence_number, std::memory_order_relaxed);
   counters.bytes.store(
-    counters.bytes.load(std::memory_order_relaxed) + written.size_bytes,
-    std::memory_order_relaxed);
+    counters.bytes.load(std::memory_order_relaxed) + written.size_bytes, std::memory_order_relaxed);
   sender.require_received();
   return sequence_number;
 }

@@ -40,10 +40,12 @@ public:
     Draft && draft, size_t size_bytes, int64_t source_timestamp_ns,
     const Correlation & correlation = {}, const WakeSet & spared = {});
 
-  /// Room in shared memory that the caller fills before it is published, at leisure: other publishes
-  /// go on. Nothing where the topic's records lie in the ring: draft() then. Throws as draft() does.
+  /// Room in shared memory that the caller fills before it is published, at leisure: other
+  /// publishes go on. Nothing where the topic's records lie in the ring: draft() then. Throws as
+  /// draft() does.
   std::optional<Loan> lend(size_t size_bytes);
-  /// Publishes the first `size_bytes` of a loan; otherwise as above. If it throws, the loan is over.
+  /// Publishes the first `size_bytes` of a loan; otherwise as above. If it throws, the loan is
+  /// over.
   uint64_t publish(Loan && loan, size_t size_bytes, int64_t source_timestamp_ns);
 
   /// Renews the lease of MANUAL_BY_TOPIC liveliness, as publish() does. No effect on other kinds.

@@ -120,8 +120,8 @@ private:
   BlockRing used_;             ///< by number
   std::vector<Block> kept_;    ///< not wanted, but read or held
   std::vector<Block> unused_;  ///< in the order of their last use
-  uint64_t count_ = 0;  ///< of all chunks, lent ones included
-  uint64_t bytes_ = 0;  ///< likewise
+  uint64_t count_ = 0;         ///< of all chunks, lent ones included
+  uint64_t bytes_ = 0;         ///< likewise
 };
 
 }  // namespace manycore

@@ -9,7 +9,11 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from made_ctf import (
+
+from rmw_manycore_py.profile.caret_files import Architecture, read
+from rmw_manycore_py.profile.ros2_tracing import Window, import_trace
+from rmw_manycore_py.profile.summary import summary_of
+from support.generated.ctf import (
     FROM_TIMER,
     FROM_TOPIC,
     MS,
@@ -21,10 +25,6 @@ from made_ctf import (
     timer,
     write_trace,
 )
-
-from rmw_manycore_py.profile.caret_files import Architecture, read
-from rmw_manycore_py.profile.ros2_tracing import Window, import_trace
-from rmw_manycore_py.profile.summary import summary_of
 
 pytestmark = [pytest.mark.unit, pytest.mark.needs("babeltrace2")]
 

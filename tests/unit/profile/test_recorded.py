@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from made_traces import FILTER_IN, FILTER_OUT, INCARNATION, NAMES, US, event, publish, take
 
 from rmw_manycore_py.profile.model import Profile
 from rmw_manycore_py.profile.recorded import profile_of
@@ -19,6 +18,16 @@ from rmw_manycore_py.trace.events import (
     Thread,
     Trace,
     endpoint_id,
+)
+from support.samples.traces import (
+    FILTER_IN,
+    FILTER_OUT,
+    INCARNATION,
+    NAMES,
+    US,
+    event,
+    publish,
+    take,
 )
 
 pytestmark = pytest.mark.unit

@@ -7,7 +7,12 @@ import os
 from itertools import count
 
 import pytest
-from made_ctf import (
+
+from rmw_manycore_py.errors import FileError, ManycoreError
+from rmw_manycore_py.profile.model import Callback, Profile
+from rmw_manycore_py.profile.ros2_tracing import Window, import_trace
+from rmw_manycore_py.profile.summary import summary_of
+from support.generated.ctf import (
     FROM_TIMER,
     FROM_TOPIC,
     MS,
@@ -24,11 +29,6 @@ from made_ctf import (
     timer,
     write_trace,
 )
-
-from rmw_manycore_py.errors import FileError, ManycoreError
-from rmw_manycore_py.profile.model import Callback, Profile
-from rmw_manycore_py.profile.ros2_tracing import Window, import_trace
-from rmw_manycore_py.profile.summary import summary_of
 
 pytestmark = [pytest.mark.unit, pytest.mark.needs("babeltrace2")]
 
