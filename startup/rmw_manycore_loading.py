@@ -40,12 +40,12 @@ class ChangesAfterLoading:
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return what the other finders find, with a loader that makes the changes."""
+        """Return what the finders after this one find, with a loader that makes the changes."""
         changes = self._changes_of(name)
         if not changes:
             return None
-        for finder in sys.meta_path:
-            spec = None if finder is self else finder.find_spec(name, path, target)
+        for finder in sys.meta_path[sys.meta_path.index(self) + 1 :]:
+            spec = finder.find_spec(name, path, target)
             if spec is not None and spec.loader is not None:
                 _change_when_loaded(spec.loader, changes)
                 return spec
