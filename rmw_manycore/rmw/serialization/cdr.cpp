@@ -92,11 +92,20 @@ const char * Cdr::why_unreadable(const uint8_t * data, size_t size) const {
   return lengths_->find_fault(data, size);
 }
 
-void Cdr::deserialize(const uint8_t * data, size_t size, void * message) const {
+void Cdr::check(const uint8_t * data, size_t size) const {
   if (const char * const reason = why_unreadable(data, size)) {
     throw manycore::Error(manycore::ErrorCode::corrupt, reason);
   }
+}
+
+void Cdr::deserialize(const uint8_t * data, size_t size, void * message) const {
+  check(data, size);
   translate_exceptions([&] { read(data, size, message); });
+}
+
+CutCdr Cdr::cut(const uint8_t * data, size_t size, size_t min_bytes) const {
+  check(data, size);
+  return lengths_->cut(data, size, min_bytes);
 }
 
 void Cdr::read(const uint8_t * data, size_t size, void * message) const {

@@ -31,9 +31,17 @@ public:
   /// Throws std::bad_alloc or manycore::Error; `message` is then unspecified.
   void deserialize(const uint8_t * data, size_t size, void * message) const;
 
+  /// See CdrLengths::cut(). Throws manycore::Error for data that deserialize() would reject.
+  CutCdr cut(const uint8_t * data, size_t size, size_t min_bytes) const;
+  const std::vector<NumberSequence> & number_sequences() const {
+    return lengths_->number_sequences();
+  }
+
 private:
   size_t write(const void * message, uint8_t * data, size_t capacity) const;
   void read(const uint8_t * data, size_t size, void * message) const;
+  /// Throws manycore::Error for data that the type support must not read.
+  void check(const uint8_t * data, size_t size) const;
   /// Reason to reject the data, or null if the type support may read it.
   const char * why_unreadable(const uint8_t * data, size_t size) const;
 

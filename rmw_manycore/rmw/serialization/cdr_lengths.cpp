@@ -23,11 +23,19 @@ using CppServiceMembers = rosidl_typesupport_introspection_cpp::ServiceMembers;
 constexpr uint8_t little_endian_bit = 1;
 constexpr bool is_little_endian = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__;
 
+bool is_swapped(const uint8_t * cdr) noexcept {
+  return ((cdr[1] & little_endian_bit) != 0) != is_little_endian;
+}
+
 }  // namespace
 
 const char * CdrLengths::find_fault(const uint8_t * cdr, size_t size) const {
-  const bool swapped = ((cdr[1] & little_endian_bit) != 0) != is_little_endian;
-  return plan().find_fault(cdr + encapsulation_bytes, size - encapsulation_bytes, swapped);
+  return plan().find_fault(cdr + encapsulation_bytes, size - encapsulation_bytes, is_swapped(cdr));
+}
+
+CutCdr CdrLengths::cut(const uint8_t * cdr, size_t size, size_t min_bytes) const {
+  return plan().is_whole() && !is_swapped(cdr) ? CutCdr::of(plan(), cdr, size, min_bytes)
+                                               : CutCdr{};
 }
 
 bool CdrLengths::know_padding() const { return plan().is_whole(); }

@@ -5,13 +5,12 @@
 #include <cstdint>
 #include <mutex>
 
+#include "rmw/serialization/cut_cdr.hpp"
 #include "rmw/serialization/length_plan.hpp"
 #include "rosidl_runtime_c/message_type_support_struct.h"
 #include "rosidl_runtime_c/service_type_support_struct.h"
 
 namespace rmw_manycore {
-
-constexpr size_t encapsulation_bytes = 4;
 
 /// Checks the lengths in a message's CDR against the remaining bytes. The generated type support
 /// resizes a wide string before reading it, assumes one byte per element whatever its size, and
@@ -33,6 +32,11 @@ public:
   bool know_padding() const;
   /// Clears the padding of a message that this process serialized.
   void clear_padding(uint8_t * cdr, size_t size) const;
+
+  const std::vector<NumberSequence> & number_sequences() const { return plan().number_sequences(); }
+  /// As CutCdr::of(); nothing is cut of a type that is not known well enough, or of a message in
+  /// the opposite byte order.
+  CutCdr cut(const uint8_t * cdr, size_t size, size_t min_bytes) const;
 
 private:
   /// Made for the first message, because it loads the introspection library, which a publisher of

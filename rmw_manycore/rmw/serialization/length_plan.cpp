@@ -42,6 +42,34 @@ constexpr size_t primitive_bytes(uint8_t type_id) noexcept {
   }
 }
 
+/// Type code of the array.array in which rclpy keeps a sequence; 0 where it keeps a list.
+constexpr char typecode(uint8_t type_id) noexcept {
+  switch (type_id) {
+    case rosidl_typesupport_introspection_c__ROS_TYPE_FLOAT:
+      return 'f';
+    case rosidl_typesupport_introspection_c__ROS_TYPE_DOUBLE:
+      return 'd';
+    case rosidl_typesupport_introspection_c__ROS_TYPE_INT8:
+      return 'b';
+    case rosidl_typesupport_introspection_c__ROS_TYPE_UINT8:
+      return 'B';
+    case rosidl_typesupport_introspection_c__ROS_TYPE_INT16:
+      return 'h';
+    case rosidl_typesupport_introspection_c__ROS_TYPE_UINT16:
+      return 'H';
+    case rosidl_typesupport_introspection_c__ROS_TYPE_INT32:
+      return 'i';
+    case rosidl_typesupport_introspection_c__ROS_TYPE_UINT32:
+      return 'I';
+    case rosidl_typesupport_introspection_c__ROS_TYPE_INT64:
+      return 'q';
+    case rosidl_typesupport_introspection_c__ROS_TYPE_UINT64:
+      return 'Q';
+    default:
+      return 0;
+  }
+}
+
 }  // namespace
 
 /// Makes the plan of one type. Stops at a type whose CDR is undefined (long double, wide
@@ -49,13 +77,21 @@ constexpr size_t primitive_bytes(uint8_t type_id) noexcept {
 template<typename Members>
 class LengthPlanner {
 public:
-  LengthPlan plan(const Members & type) {
+  /// Where the fields of a message are, seen from the outermost one.
+  struct Place {
+    std::string prefix;
+    size_t offset = 0;
+    bool is_single = true;  ///< not in elements of a sequence or array
+  };
+
+  LengthPlan plan(const Members & type, const Place & place) {
     LengthPlan plan;
     for (uint32_t i = 0; i < type.member_count_ && !is_at_unknown_; ++i) {
-      add(plan, type.members_[i]);
+      add(plan, type.members_[i], place);
     }
     return plan;
   }
+  std::vector<NumberSequence> take_sequences() noexcept { return std::move(sequences_); }
   bool is_at_unknown() const noexcept { return is_at_unknown_; }
 
 private:
@@ -63,15 +99,19 @@ private:
   using Kind = Step::Kind;
 
   template<typename Member>
-  void add(LengthPlan & plan, const Member & member) {
+  void add(LengthPlan & plan, const Member & member, const Place & place) {
     const bool is_sequence =
       member.is_array_ && (member.array_size_ == 0 || member.is_upper_bound_);
     const size_t count = member.is_array_ ? member.array_size_ : 1;
     if (member.type_id_ == rosidl_typesupport_introspection_c__ROS_TYPE_MESSAGE) {
       const auto & members = *static_cast<const Members *>(member.members_->data);
-      add_messages(plan, LengthPlanner::plan(members), is_sequence, count);
+      const Place inside{
+        place.prefix + member.name_ + ".", place.offset + member.offset_,
+        place.is_single && !member.is_array_};
+      add_messages(plan, LengthPlanner::plan(members, inside), is_sequence, count);
     } else if (const size_t bytes = primitive_bytes(member.type_id_)) {
-      plan.add({Kind::fixed, is_sequence, count, bytes, bytes, nullptr});
+      const size_t index = is_sequence ? list(member, place) : LengthPlan::not_listed;
+      plan.add({Kind::fixed, is_sequence, count, bytes, bytes, nullptr, index});
     } else if (member.type_id_ == rosidl_typesupport_introspection_c__ROS_TYPE_STRING) {
       plan.add({Kind::string, is_sequence, count, 1, length_bytes, nullptr});
     } else if (member.type_id_ == rosidl_typesupport_introspection_c__ROS_TYPE_WSTRING) {
@@ -80,6 +120,16 @@ private:
       is_at_unknown_ = true;
       plan.add({Kind::unknown, is_sequence, 0, 1, 1, nullptr});
     }
+  }
+  /// Returns the sequence's index.
+  template<typename Member>
+  size_t list(const Member & member, const Place & place) {
+    const char code = typecode(member.type_id_);
+    if (code == 0 || !place.is_single) {
+      return LengthPlan::not_listed;
+    }
+    sequences_.push_back({place.prefix + member.name_, code, place.offset + member.offset_});
+    return sequences_.size() - 1;
   }
   void add_messages(LengthPlan & plan, LengthPlan part, bool is_sequence, size_t count) {
     const size_t bytes = std::max<size_t>(part.min_bytes(), 1);
@@ -97,13 +147,15 @@ private:
   }
 
   bool is_at_unknown_ = false;
+  std::vector<NumberSequence> sequences_;
 };
 
 template<typename Members>
 LengthPlan LengthPlan::of(const Members & type) {
   LengthPlanner<Members> planner;
-  LengthPlan plan = planner.plan(type);
+  LengthPlan plan = planner.plan(type, {});
   plan.is_whole_ = !planner.is_at_unknown();
+  plan.sequences_ = planner.take_sequences();
   plan.find_last_length();
   return plan;
 }
@@ -166,7 +218,7 @@ public:
   : data_(data), size_(size), swapped_(swapped) {}
 
   /// Up to the last length.
-  bool check(const LengthPlan & plan) noexcept {
+  bool check(const LengthPlan & plan) {
     for (size_t i = 0; i < plan.steps_to_check_; ++i) {
       const bool is_number = plan.ends_with_number_ && i + 1 == plan.steps_to_check_;
       const Step & step = plan.steps_[i];
@@ -177,13 +229,18 @@ public:
     }
     return true;
   }
-  bool follow(const LengthPlan & plan) noexcept {
+  bool follow(const LengthPlan & plan) {
     return std::all_of(plan.steps_.begin(), plan.steps_.end(), [this](const Step & step) {
       size_t count = step.count;
       return number(step, count) && elements(step, count);
     });
   }
   bool has_met_broken_text() const noexcept { return has_met_broken_text_; }
+  /// Lets follow() list number sequences of at least `min_bytes`.
+  void list_large(std::vector<LengthPlan::Found> & found, size_t min_bytes) noexcept {
+    found_ = &found;
+    min_bytes_ = min_bytes;
+  }
 
 private:
   using Step = LengthPlan::Step;
@@ -192,10 +249,10 @@ private:
   bool number(const Step & step, size_t & count) noexcept {
     return !step.is_sequence || (length(count) && count <= left() / step.bytes);
   }
-  bool elements(const Step & step, size_t count) noexcept {
+  bool elements(const Step & step, size_t count) {
     switch (step.kind) {
       case Step::Kind::fixed:
-        return count == 0 || (align(step.alignment) && skip(count * step.bytes));
+        return count == 0 || (align(step.alignment) && numbers(step, count));
       case Step::Kind::string:
         return strings(1, count);
       case Step::Kind::wide_string:
@@ -207,6 +264,16 @@ private:
         return count == 0;
       case Step::Kind::unknown:
         break;
+    }
+    return true;
+  }
+  bool numbers(const Step & step, size_t count) {
+    const size_t at = at_;
+    if (!skip(count * step.bytes)) {
+      return false;
+    }
+    if (found_ != nullptr && step.sequence != LengthPlan::not_listed && at_ - at >= min_bytes_) {
+      found_->push_back({step.sequence, length_at_, at, count, step.bytes});
     }
     return true;
   }
@@ -262,6 +329,7 @@ private:
       return false;
     }
     result = word(at_);
+    length_at_ = at_;
     return skip(length_bytes);
   }
   uint32_t word(size_t at) const noexcept {
@@ -273,7 +341,10 @@ private:
   Byte * data_;
   size_t size_;
   size_t at_ = 0;
+  size_t length_at_ = 0;  ///< of the length read last
   bool swapped_;
+  std::vector<LengthPlan::Found> * found_ = nullptr;
+  size_t min_bytes_ = 0;
   bool has_met_broken_text_ = false;
 };
 
@@ -288,6 +359,17 @@ const char * LengthPlan::find_fault(const uint8_t * data, size_t size, bool swap
 
 void LengthPlan::clear_padding(uint8_t * data, size_t size) const {
   CdrWalk<uint8_t>(data, size, false).follow(*this);
+}
+
+std::vector<LengthPlan::Found> LengthPlan::find_large(
+  const uint8_t * data, size_t size, size_t min_bytes) const {
+  std::vector<Found> found;
+  if (!sequences_.empty() && size >= min_bytes) {
+    CdrWalk<const uint8_t> walk(data, size, false);
+    walk.list_large(found, min_bytes);
+    walk.follow(*this);
+  }
+  return found;
 }
 
 }  // namespace rmw_manycore

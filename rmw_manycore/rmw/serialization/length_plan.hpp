@@ -6,7 +6,11 @@
 #include <memory>
 #include <vector>
 
+#include "rmw/serialization/number_sequence.hpp"
+
 namespace rmw_manycore {
+
+constexpr size_t encapsulation_bytes = 4;
 
 /// Positions of the lengths and of the padding in the CDR of a type's messages, computed once per
 /// type. Members of fixed size in between are skipped in one step.
@@ -26,12 +30,26 @@ public:
   /// Clears the padding of a message in this machine's byte order. Requires is_whole().
   void clear_padding(uint8_t * data, size_t size) const;
 
+  const std::vector<NumberSequence> & number_sequences() const noexcept { return sequences_; }
+  /// Place of a sequence in a message, in bytes from `data`.
+  struct Found {
+    size_t index;  ///< in number_sequences()
+    size_t length_at;
+    size_t at;
+    size_t count;
+    size_t element_bytes;
+  };
+  /// The number sequences with elements of `min_bytes` together, in the order of the CDR. `data` is
+  /// in this machine's byte order and has no fault. Requires is_whole().
+  std::vector<Found> find_large(const uint8_t * data, size_t size, size_t min_bytes) const;
+
 private:
   template<typename Byte>
   friend class CdrWalk;
   template<typename Members>
   friend class LengthPlanner;
 
+  static constexpr size_t not_listed = -1;
   struct Step {
     enum class Kind : uint8_t {
       fixed,        ///< `bytes` of primitives, aligned
@@ -46,6 +64,7 @@ private:
     size_t alignment;
     size_t bytes;  ///< minimum size of an element
     std::shared_ptr<const LengthPlan> part;
+    size_t sequence = not_listed;  ///< index in number_sequences()
   };
 
   /// True if the step contains a length for which memory is reserved before the elements are read.
@@ -60,6 +79,7 @@ private:
   void find_last_length();
 
   std::vector<Step> steps_;
+  std::vector<NumberSequence> sequences_;
   size_t steps_to_check_ = 0;  ///< no length that reserves memory follows
   /// Of the last one of them only the number of elements is checked.
   bool ends_with_number_ = false;
