@@ -21,6 +21,8 @@ NATIVE_BELOW = {
     "python": {"platform", "transport", "ndt"},
     "bench": {"platform", "transport", "ndt", "python"},
 }
+# Headers that others may include beside.
+OPEN = {"rmw/borrowing/interface.hpp": {"python"}}  # what the library does for a Python module
 # Folders inside these directories, lowest first. Files directly in a directory are its public
 # interface, above all of its folders.
 FOLDERS = {
@@ -30,8 +32,8 @@ FOLDERS = {
         *("notification", "movers", "lifecycle", "waiting", "publisher", "subscription"),
     ],
     "rmw": [
-        *("common", "serialization", "events", "context", "qos", "graph", "topics", "services"),
-        "waiting",
+        *("common", "serialization", "borrowing", "events", "context", "qos", "graph", "topics"),
+        *("services", "waiting"),
     ],
     "ndt": ["common", "map", "kernel", "optimisation", "matching"],
 }
@@ -69,7 +71,7 @@ def allowed(path: Path, header: str) -> bool:
         included = directory_of(NATIVE / header)
         if included == directory:
             return folder_layer(NATIVE / header) <= folder_layer(path)
-        return included in NATIVE_BELOW[directory]
+        return included in NATIVE_BELOW[directory] or directory in OPEN.get(header, ())
     if ROS_HEADER.match(header):
         return directory in SEES_ROS
     return header not in PLATFORM_ONLY or directory in CALLS_THE_SYSTEM

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "rmw/context/context.hpp"
@@ -23,6 +24,9 @@ public:
   rmw_node_t handle{};
 
   manycore::Process & process() const noexcept { return *context_.process; }
+  const std::shared_ptr<manycore::Process> & shared_process() const noexcept {
+    return context_.process;
+  }
   CallbackThread & callback_thread() const noexcept { return context_.callback_thread; }
   /// Handle of the node in the registry.
   uint32_t registered() const noexcept { return registered_; }

@@ -9,19 +9,6 @@
 
 namespace rmw_manycore {
 
-std::optional<manycore::RecordInfo> Inbox::take(const Cdr & cdr, void * message) {
-  while (auto claim = subscription_->claim()) {
-    try {
-      cdr.deserialize(claim->data(), claim->size(), message);
-      return claim->info();
-    } catch (const std::exception & error) {
-      claim->reject();
-      warn_of_drop(claim->size(), error.what());
-    }
-  }
-  return std::nullopt;
-}
-
 void Inbox::warn_of_drop(size_t size, const char * reason) noexcept {
   const int64_t now_ns = manycore::monotonic_ns();
   int64_t next_ns = next_warning_ns_.load(std::memory_order_relaxed);

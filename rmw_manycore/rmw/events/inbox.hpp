@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <memory>
 #include <optional>
 
@@ -35,10 +36,27 @@ public:
   bool has_data() const noexcept { return subscription_->has_data(); }
 
   std::optional<manycore::Claim> claim() { return subscription_->claim(); }
-  /// Takes the next message that `cdr` can deserialize, directly out of its topic DSM; nothing if
-  /// there is none. Malformed messages are dropped and counted as lost, so bytes from the network
-  /// cannot end a node.
-  std::optional<manycore::RecordInfo> take(const Cdr & cdr, void * message);
+  /// Calls `read(claim)` for the next message, directly in its topic DSM; nothing if there is none.
+  /// Malformed messages, for which it throws, are dropped and counted as lost, so bytes from the
+  /// network cannot end a node.
+  template<typename Read>
+  std::optional<manycore::RecordInfo> take(const Read & read) {
+    while (auto claim = subscription_->claim()) {
+      try {
+        read(*claim);
+        return claim->info();
+      } catch (const std::exception & error) {
+        claim->reject();
+        warn_of_drop(claim->size(), error.what());
+      }
+    }
+    return std::nullopt;
+  }
+  /// Takes the next message that `cdr` can deserialize.
+  std::optional<manycore::RecordInfo> take(const Cdr & cdr, void * message) {
+    return take(
+      [&](const manycore::Claim & claim) { cdr.deserialize(claim.data(), claim.size(), message); });
+  }
 
 private:
   /// Logs at most once per second.

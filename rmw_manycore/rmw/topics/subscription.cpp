@@ -30,6 +30,7 @@ Subscription::Subscription(
   const Node & node, const MessageType & type, const char * topic,
   const rmw_qos_profile_t & profile, const rmw_subscription_options_t & options)
 : EndpointEvents(node.callback_thread()),
+  process_(node.shared_process()),
   topic_(topic),
   cdr_(type.cdr),
   loans_(cdr_.plain_bytes()),

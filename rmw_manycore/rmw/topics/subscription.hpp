@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "rmw/context/node.hpp"
@@ -30,11 +31,13 @@ public:
   const Cdr & cdr() const noexcept { return cdr_; }
   Loans & loans() noexcept { return loans_; }
   Inbox & inbox() noexcept { return inbox_; }
+  const std::shared_ptr<manycore::Process> & process() const noexcept { return process_; }
   const manycore::Subscription & transport() const noexcept { return inbox_.transport(); }
 
 private:
   EventCounts counts(rmw_event_type_t type) const override;
 
+  const std::shared_ptr<manycore::Process> process_;
   const std::string topic_;
   const Cdr cdr_;
   Loans loans_;

@@ -1,4 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "rmw/borrowing/read.hpp"
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
 #include "rmw/common/tracepoints.hpp"
@@ -11,7 +12,9 @@ namespace {
 
 /// `info` may be null.
 bool take(Subscription & subscription, void * ros_message, rmw_message_info_t * info) {
-  const auto taken = subscription.inbox().take(subscription.cdr(), ros_message);
+  const auto taken = subscription.inbox().take([&](manycore::Claim & claim) {
+    read(claim, subscription.cdr(), ros_message, subscription.process());
+  });
   if (taken && info != nullptr) {
     *info = to_rmw(*taken);
   }
