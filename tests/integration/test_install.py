@@ -26,7 +26,7 @@ pytestmark = [pytest.mark.integration, pytest.mark.long]
 BUILT_MESSAGES = {path.name for path in (REPOSITORY / "interfaces").iterdir()}
 STAND_INS = {"librmw_fastrtps_cpp.so", "librmw_fastrtps_shared_cpp.so", "libfastrtps.so.2.14"}
 ROS_LIBRARY = re.compile(r"lib(rmw|rcl|rcutils|rcpputils|rosidl_|fastcdr|fastrtps|tracetools)\w*\.")
-STARTUP = ("executor", "fields", "hook", "interfaces", "loading", "program", "receive")
+STARTUP = ("arrays", "executor", "fields", "hook", "interfaces", "loading", "program", "receive")
 
 
 def pythons() -> Iterator[Path]:
@@ -127,7 +127,7 @@ def test_top_level_names(unpacked: Path) -> None:
         name.partition(".cpython-")[0] for name in found if not name.startswith("rmw_manycore-")
     }
     modules = {f"rmw_manycore_{name}.py" for name in STARTUP}
-    startup = {"rmw_manycore.pth", "_rmw_manycore_fields", *modules}
+    startup = {"rmw_manycore.pth", "_rmw_manycore_arrays", "_rmw_manycore_fields", *modules}
     assert names == startup | {"rmw_manycore_bridge", "rmw_manycore_py"} | BUILT_MESSAGES
 
 

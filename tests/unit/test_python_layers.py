@@ -28,6 +28,7 @@ LAYERS = [
     ("rmw_manycore_hook", "rmw_manycore_interfaces", "rmw_manycore_receive"),
     ("rmw_manycore_loading",),
     (
+        "rmw_manycore_arrays",
         "rmw_manycore_executor",
         "rmw_manycore_fields",
         "rmw_manycore_program",

@@ -1,0 +1,182 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "python/arrays/record_array.hpp"
+
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "python/arrays/array_layout.hpp"
+#include "python/arrays/owned.hpp"
+
+namespace rmw_manycore {
+namespace {
+
+struct RecordArray {
+  ArrayObject array;
+  Lease * lease;  ///< null: the elements are in memory of Python, as of any array.array
+};
+
+PyTypeObject * array_type = nullptr;  ///< array.array
+
+Lease *& lease_of(PyObject * self) noexcept { return reinterpret_cast<RecordArray *>(self)->lease; }
+
+template<typename Function>
+Function upstream(int slot) noexcept {
+  return reinterpret_cast<Function>(PyType_GetSlot(array_type, slot));
+}
+
+void leave_record(PyObject * self, char * items) noexcept {
+  as_array(self).items = items;
+  as_array(self).exports -= 1;  // that of the record
+  std::exchange(lease_of(self), nullptr)->give_back();
+}
+
+/// Before a method that resizes. While other buffers are exported, array.array itself refuses.
+bool copy_out(PyObject * self) {
+  ArrayObject & array = as_array(self);
+  if (lease_of(self) == nullptr || array.exports > 1) {
+    return true;
+  }
+  const size_t bytes = static_cast<size_t>(Py_SIZE(self)) * array.description->item_bytes;
+  auto * const items = static_cast<char *>(PyMem_Malloc(bytes));
+  if (items == nullptr) {
+    PyErr_NoMemory();
+    return false;
+  }
+  std::memcpy(items, array.items, bytes);
+  leave_record(self, items);
+  return true;
+}
+
+void destroy(PyObject * self) {
+  if (lease_of(self) != nullptr) {
+    leave_record(self, nullptr);
+  }
+  upstream<destructor>(Py_tp_dealloc)(self);
+}
+
+/// array.array's method of this name, after copy_out().
+template<const char * name>
+PyObject * resize(PyObject * self, PyObject * arguments, PyObject * named) {
+  if (!copy_out(self)) {
+    return nullptr;
+  }
+  const Owned method(PyObject_GetAttrString(reinterpret_cast<PyObject *>(array_type), name));
+  const Owned bound(method ? PyObject_CallMethod(method.get(), "__get__", "O", self) : nullptr);
+  return bound ? PyObject_Call(bound.get(), arguments, named) : nullptr;
+}
+
+/// As array.array, so that pickles load without this module.
+PyObject * reduce(PyObject * self, PyObject * protocol) {
+  const Owned plain(PyObject_CallMethod(self, "__copy__", nullptr));
+  return plain ? PyObject_CallMethod(plain.get(), "__reduce_ex__", "O", protocol) : nullptr;
+}
+
+PyObject * concatenate(PyObject * self, PyObject * other) {
+  return copy_out(self) ? upstream<binaryfunc>(Py_sq_inplace_concat)(self, other) : nullptr;
+}
+
+PyObject * repeat(PyObject * self, Py_ssize_t count) {
+  return copy_out(self) ? upstream<ssizeargfunc>(Py_sq_inplace_repeat)(self, count) : nullptr;
+}
+
+int assign_item(PyObject * self, Py_ssize_t index, PyObject * value) {
+  if (value == nullptr && !copy_out(self)) {
+    return -1;
+  }
+  return upstream<ssizeobjargproc>(Py_sq_ass_item)(self, index, value);
+}
+
+/// Whether an assignment replaces elements one by one. Without any, array.array may still resize.
+bool keeps_length(PyObject * self, PyObject * key, PyObject * value) {
+  if (value == nullptr) {
+    return false;
+  }
+  if (!PySlice_Check(key)) {
+    return true;
+  }
+  Py_ssize_t begin = 0;
+  Py_ssize_t end = 0;
+  Py_ssize_t step = 0;
+  if (!PyObject_TypeCheck(value, array_type) || PySlice_Unpack(key, &begin, &end, &step) != 0) {
+    PyErr_Clear();  // array.array raises it
+    return false;
+  }
+  const Py_ssize_t count = PySlice_AdjustIndices(Py_SIZE(self), &begin, &end, step);
+  return count != 0 && count == Py_SIZE(value);
+}
+
+int assign(PyObject * self, PyObject * key, PyObject * value) {
+  if (!keeps_length(self, key, value) && !copy_out(self)) {
+    return -1;
+  }
+  return upstream<objobjargproc>(Py_mp_ass_subscript)(self, key, value);
+}
+
+template<const char * name>
+PyMethodDef resizing() {
+  return {
+    name, reinterpret_cast<PyCFunction>(reinterpret_cast<void *>(resize<name>)),
+    METH_VARARGS | METH_KEYWORDS, "As of array.array."};
+}
+
+constexpr char append[] = "append", clear[] = "clear", extend[] = "extend",
+               frombytes[] = "frombytes", fromfile[] = "fromfile", fromlist[] = "fromlist",
+               fromunicode[] = "fromunicode", insert[] = "insert", pop[] = "pop",
+               remove[] = "remove";
+
+/// Those that this Python's array.array has.
+PyMethodDef * methods() {
+  static std::vector<PyMethodDef> methods;
+  for (const PyMethodDef & method :
+       {resizing<append>(), resizing<clear>(), resizing<extend>(), resizing<frombytes>(),
+        resizing<fromfile>(), resizing<fromlist>(), resizing<fromunicode>(), resizing<insert>(),
+        resizing<pop>(), resizing<remove>()}) {
+    if (PyObject_HasAttrString(reinterpret_cast<PyObject *>(array_type), method.ml_name)) {
+      methods.push_back(method);
+    }
+  }
+  methods.push_back({"__reduce_ex__", reduce, METH_O, "As of array.array."});
+  methods.push_back({nullptr, nullptr, 0, nullptr});
+  return methods.data();
+}
+
+}  // namespace
+
+PyTypeObject * make_record_array_type(PyTypeObject * base) {
+  array_type = base;
+  PyType_Slot slots[] = {
+    {Py_tp_doc, const_cast<char *>("An array.array in the record that a message was taken from.")},
+    {Py_tp_dealloc, reinterpret_cast<void *>(destroy)},
+    {Py_tp_methods, methods()},
+    {Py_sq_inplace_concat, reinterpret_cast<void *>(concatenate)},
+    {Py_sq_inplace_repeat, reinterpret_cast<void *>(repeat)},
+    {Py_sq_ass_item, reinterpret_cast<void *>(assign_item)},
+    {Py_mp_ass_subscript, reinterpret_cast<void *>(assign)},
+    {0, nullptr}};
+  // The name is a part of what repr() returns.
+  PyType_Spec spec = {
+    "_rmw_manycore_arrays.array", sizeof(RecordArray), 0, Py_TPFLAGS_DEFAULT, slots};
+  const Owned bases(PyTuple_Pack(1, base));
+  return bases ? reinterpret_cast<PyTypeObject *>(PyType_FromSpecWithBases(&spec, bases.get()))
+               : nullptr;
+}
+
+PyObject * make_record_array(
+  PyTypeObject * type, PyObject * like, void * items, size_t count, Lease & lease) {
+  PyObject * const self = type->tp_alloc(type, 0);
+  if (self == nullptr) {
+    return nullptr;
+  }
+  ArrayObject & array = as_array(self);
+  array.items = static_cast<char *>(items);
+  array.allocated = static_cast<Py_ssize_t>(count);
+  array.description = as_array(like).description;
+  array.exports = 1;
+  Py_SET_SIZE(&array.head, static_cast<Py_ssize_t>(count));
+  lease.keep();
+  lease_of(self) = &lease;
+  return self;
+}
+
+}  // namespace rmw_manycore
