@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 import rclpy
+from exchanging import status_of_child
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.executors import SingleThreadedExecutor
 from std_msgs.msg import String
@@ -24,19 +25,6 @@ pytestmark = [
     pytest.mark.filterwarnings("ignore:.*multi-threaded, use of fork:DeprecationWarning"),
     pytest.mark.skipif(not IS_MANYCORE, reason="other middlewares say nothing about fork()"),
 ]
-
-
-def status_of_child(act: Callable[[], Any]) -> int:
-    """Return the exit status of a forked child that runs `act`: 0 if it returns."""
-    child = os.fork()
-    if child == 0:
-        status = 1
-        try:
-            act()
-            status = 0
-        finally:
-            os._exit(status)
-    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
 
 
 def say_from_a_context_of_its_own(text: str) -> None:

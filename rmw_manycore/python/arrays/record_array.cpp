@@ -62,7 +62,9 @@ PyObject * resize(PyObject * self, PyObject * arguments, PyObject * named) {
     return nullptr;
   }
   const Owned method(PyObject_GetAttrString(reinterpret_cast<PyObject *>(array_type), name));
-  const Owned bound(method ? PyObject_CallMethod(method.get(), "__get__", "O", self) : nullptr);
+  // CPython 3.11 reads the type, which its documentation calls optional.
+  const Owned bound(
+    method ? PyObject_CallMethod(method.get(), "__get__", "OO", self, Py_TYPE(self)) : nullptr);
   return bound ? PyObject_Call(bound.get(), arguments, named) : nullptr;
 }
 
