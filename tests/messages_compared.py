@@ -4,8 +4,8 @@
     python messages_compared.py
 
 Run with and without MANYCORE_ZERO_COPY=off, it prints the same, but for `in_record`.
-Prints, as JSON, by type: a hash of what is published and of what is taken, and how many arrays of
-the taken messages lie in a record.
+Prints, as JSON, by type: a hash of what is published and taken, another one of what is taken of
+damaged messages, and how many arrays of the taken messages lie in a record.
 """
 
 from __future__ import annotations
@@ -26,6 +26,8 @@ from ros_support import spin_until
 import rmw_manycore_arrays as arrays
 
 ROUNDS = 3
+DAMAGED = 12
+EDGE_BYTES = 300  # at either end of a message, where its lengths and strings are
 
 
 def exchanged(node: Node, message: Any, sent: list[Any]) -> list[Any]:
@@ -40,6 +42,39 @@ def exchanged(node: Node, message: Any, sent: list[Any]) -> list[Any]:
     node.destroy_subscription(subscription)
     node.destroy_publisher(publisher)
     return taken
+
+
+def damaged(cdr: bytes, source: random.Random) -> bytes:
+    """Return a CDR with a few other bytes outside of most arrays, sometimes without its end."""
+    changed = bytearray(cdr)
+    for _ in range(source.randrange(1, 4)):
+        at = source.randrange(min(EDGE_BYTES, len(cdr)))
+        changed[source.choice((at, -1 - at))] = source.choice((0, 1, 127, 255))
+    return bytes(changed[: len(cdr) - source.choice((0, 0, 1, 7, 70_000))])
+
+
+def taken_of_damaged(node: Node, message: Any, source: random.Random) -> str:
+    """Return a hash of what is taken of damaged messages, or which error it raises."""
+    digest = hashlib.sha256()
+    publisher = node.create_publisher(message, "damaged", 10)
+    subscription = node.create_subscription(message, "damaged", print, 10)
+    spin_until(node, publisher.get_subscription_count)
+    last = message()
+    for _ in range(DAMAGED):
+        whole = serialize_message(made_message(message, source, is_large=True))
+        publisher.publish(damaged(whole, source))
+        publisher.publish(last)
+        taken: Any = None
+        while not (taken and taken[0] == last):
+            try:
+                taken = subscription.handle.take_message(message, False)
+            except Exception as error:
+                digest.update(repr(type(error)).encode())
+            else:
+                digest.update(repr(taken[0]).encode() if taken else b"")
+    node.destroy_subscription(subscription)
+    node.destroy_publisher(publisher)
+    return digest.hexdigest()
 
 
 def hash_of(messages: list[Any]) -> str:
@@ -61,6 +96,7 @@ def compare(node: Node, message: Any) -> dict[str, Any]:
     assert all(isinstance(value, array.array) for value in found)
     return {
         "hash": hash_of(taken),
+        "damaged": taken_of_damaged(node, message, source),
         "in_record": sum(type(value) is not array.array for value in found),
     }
 

@@ -9,7 +9,7 @@ namespace rmw_manycore {
 /// Shorter sequences are copied: that takes less time than to borrow them.
 constexpr size_t min_borrowed_bytes = size_t{64} << 10;
 
-/// Keeps the bytes of a record in place.
+/// Keeps the bytes of a record in place, see manycore::Hold.
 struct RecordHold;
 
 /// The elements of a large sequence, where they lie in the record.
