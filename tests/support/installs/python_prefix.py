@@ -12,6 +12,7 @@ from pathlib import Path
 import rmw_manycore_hook as hook
 from support import TIMEOUT_S
 
+STARTUP = ("arrays", "executor", "fields", "hook", "interfaces", "loading", "program")
 SHOW = (
     "import json, os, sys; print(json.dumps({'environ': dict(os.environ), 'argv': sys.argv,"
     "'orig_argv': sys.orig_argv[1:], 'flags': sys.flags.utf8_mode, 'path': sys.path,"
@@ -29,7 +30,7 @@ class Prefix:
         self.python = path / "bin/python"
         self.site_packages = next(path.glob("lib/python*/site-packages"))
         self.stand_ins = path / "lib/rmw_manycore/standin"
-        for name in ("executor", "fields", "hook", "interfaces", "loading", "program"):
+        for name in STARTUP:
             shutil.copy(Path(hook.__file__).parent / f"rmw_manycore_{name}.py", self.site_packages)
         shutil.copy(Path(hook.__file__).parent / "rmw_manycore.pth", self.site_packages)
         self.stand_ins.mkdir(parents=True)

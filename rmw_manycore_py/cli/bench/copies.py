@@ -1,0 +1,22 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore bench copies`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from rmw_manycore_py.bench import copies
+from rmw_manycore_py.cli.bench.answer import answer
+from rmw_manycore_py.cli.bench.options import bench_options
+
+
+@click.command("copies")
+@bench_options
+def command(**options: Any) -> None:
+    """Measure takes of large messages in rclpy.
+
+    With and without copies.
+    """
+    answer([copies.QUESTION], **options)
