@@ -11,13 +11,13 @@ from typing import Any
 
 import pytest
 import rclpy
-from exchanging import status_of_child
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.executors import SingleThreadedExecutor
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from support import IS_MANYCORE, TIMEOUT_S
+from support.nodes.exchanging import status_of_child
 from support.nodes.ros import spin_until
 
 pytestmark = [

@@ -15,8 +15,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from exchanging import Exchange, in_record, large
+
 from support import IS_MANYCORE, TIMEOUT_S
+from support.nodes.exchanging import Exchange, in_record, large
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="others copy")
 

@@ -17,15 +17,16 @@ from typing import Any
 import numpy as np
 import pytest
 import rclpy
-from exchanging import Exchange, in_record, large, status_of_child
 from geometry_msgs.msg import Point
 from rclpy.serialization import deserialize_message, serialize_message
-from ros_support import announce, lost_messages, peer_node, spin_until
 from sensor_msgs.msg import Image, PointCloud2
 from std_msgs.msg import UInt8MultiArray
-from support import IS_MANYCORE, TIMEOUT_S, environment, unique_platform
 
 import rmw_manycore_arrays as arrays
+from support import IS_MANYCORE, TIMEOUT_S
+from support.nodes.exchanging import Exchange, in_record, large, status_of_child
+from support.nodes.ros import announce, lost_messages, peer_node, spin_until
+from support.processes.platforms import environment, unique_platform
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="others copy")
 
@@ -46,7 +47,7 @@ def run(*arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
 
 
 def compared(**variables: str) -> dict[str, dict[str, Any]]:
-    done = run(str(TESTS / "messages_compared.py"), **variables)
+    done = run("-m", "support.comparisons.messages", **variables)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 

@@ -10,8 +10,9 @@ from collections.abc import Callable
 from typing import Any
 
 from rclpy.node import Node
-from ros_support import spin_until
 from std_msgs.msg import Float64MultiArray, UInt8MultiArray
+
+from support.nodes.ros import spin_until
 
 LARGE_BYTES = 100_000
 # By type code: types whose only number sequence is `data`.

@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Publishes and takes messages of all installed types with sequences of numbers.
 
-    python messages_compared.py
+    python -m support.comparisons.messages
 
 Run with and without MANYCORE_ZERO_COPY=off, it prints the same, but for `in_record`.
 Prints, as JSON, by type: a hash of what is published and taken, another one of what is taken of
@@ -18,12 +18,12 @@ import sys
 from typing import Any
 
 import rclpy
-from made_messages import classes_with_number_fields, made_message, value_at
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message, serialize_message
-from ros_support import spin_until
 
 import rmw_manycore_arrays as arrays
+from support.generated.messages import classes_with_number_fields, made_message, value_at
+from support.nodes.ros import spin_until
 
 ROUNDS = 3
 DAMAGED = 12
