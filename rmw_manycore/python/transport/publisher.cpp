@@ -51,17 +51,17 @@ private:
   Py_buffer view_{};
 };
 
-int get_buffer(PyObject * self, Py_buffer * view, int flags) noexcept {
+int get_room(PyObject * self, Py_buffer * view, int flags) noexcept {
   return nb::inst_ptr<BoundLoan>(self)->add_view(self, view, flags);
 }
 
-void release_buffer(PyObject * self, Py_buffer *) noexcept {
+void release_room(PyObject * self, Py_buffer *) noexcept {
   nb::inst_ptr<BoundLoan>(self)->remove_view();
 }
 
 PyType_Slot loan_slots[] = {
-  {Py_bf_getbuffer, reinterpret_cast<void *>(&get_buffer)},
-  {Py_bf_releasebuffer, reinterpret_cast<void *>(&release_buffer)},
+  {Py_bf_getbuffer, reinterpret_cast<void *>(&get_room)},
+  {Py_bf_releasebuffer, reinterpret_cast<void *>(&release_room)},
   {0, nullptr}};
 
 }  // namespace
