@@ -15,6 +15,7 @@ from rmw_manycore_py.platform.monitor.sample import (
     CAPACITY,
     DEADLINES,
     EXPIRED,
+    HELD,
     LOST,
     MESSAGES,
     QUEUED,
@@ -92,6 +93,7 @@ def _endpoint(look: Look, row: int, endpoint: Endpoint) -> Row:
         "rate": rate_text(messages / seconds),
         "size": bytes_text(int(changes[BYTES]) / messages) if messages > 0 else "",
         "queue": f"{counts[QUEUED]}/{counts[CAPACITY]}" if counts[CAPACITY] else "",
+        "in_place": f"{changes[HELD] / messages:.0%}" if changes[HELD] > 0 else "",
         "lost": int(counts[LOST] + counts[EXPIRED] + counts[REFUSED]),
         "deadlines_missed": int(counts[DEADLINES]),
     }

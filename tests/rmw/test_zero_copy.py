@@ -23,6 +23,7 @@ from sensor_msgs.msg import Image, PointCloud2
 from std_msgs.msg import UInt8MultiArray
 
 import rmw_manycore_arrays as arrays
+from rmw_manycore_py.native._transport import Platform
 from support import IS_MANYCORE, TIMEOUT_S
 from support.nodes.exchanging import Exchange, in_record, large, status_of_child
 from support.nodes.ros import announce, lost_messages, peer_node, spin_until
@@ -290,3 +291,12 @@ def test_a_child_of_a_child(node):
 
     assert status_of_child(look) == 0
     assert held == large()
+
+
+def test_messages_that_are_held_are_counted(node):
+    exchange = Exchange(node)
+    for values in (large(seed=1), array.array("B", b"small"), large(seed=2)):
+        assert exchange(values) == values
+    found = Platform(os.environ["MANYCORE_PLATFORM"]).endpoints()
+    counters = [e.counters for e in found if e.topic == "/large" and e.kind == "subscription"]
+    assert [(one.messages, one.held) for one in counters] == [(3, 2)]
