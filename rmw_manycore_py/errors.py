@@ -55,11 +55,15 @@ class Problem:
 
 
 class FileError(ManycoreError):
-    """All problems in files of the user, in line order, and lines of advice."""
+    """All problems in files of the user, in line order.
 
-    def __init__(self, *problems: Problem, advice: Iterable[str] = ()) -> None:
+    :ivar hints: what helps, one line each, behind the problems in the text.
+    """
+
+    def __init__(self, *problems: Problem, hints: Iterable[str] = ()) -> None:
         self.problems = tuple(sorted(problems, key=lambda p: (str(p.file), p.line)))
-        super().__init__("\n".join([*map(str, self.problems), *advice]), EXIT_BAD_INPUT)
+        self.hints = tuple(hints)
+        super().__init__("\n".join([*map(str, self.problems), *self.hints]), EXIT_BAD_INPUT)
 
 
 class MapfileError(FileError):

@@ -24,7 +24,7 @@ class RoomError(MapfileError):
     """Problems of a mapfile that places more in a cluster than it has room for."""
 
     def __init__(self, problems: Sequence[Problem], advice: Advice) -> None:
-        super().__init__(*problems, advice=advice.lines())
+        super().__init__(*problems, hints=advice.lines())
         self.advice = advice
 
 

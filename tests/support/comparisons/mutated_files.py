@@ -70,7 +70,8 @@ def complaint(error: BaseException) -> str | None:
     if not isinstance(error, MapfileError):
         return f"{type(error).__name__}: {error}"
     lines = str(error).split("\n")
-    if len(lines) != len(error.problems) or not all(line.isprintable() for line in lines):
+    expected = len(error.problems) + len(error.hints)
+    if len(lines) != expected or not all(line.isprintable() for line in lines):
         return f"not one line per problem: {error}"
     return None
 
