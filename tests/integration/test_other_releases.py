@@ -67,7 +67,8 @@ def test_exceptions_of_fast_cdr_are_translated(tmp_path, base):
             ("what() const noexcept override", "what() const noexcept"),
         ]
     header = changed(tmp_path, EXCEPTION, *changes)
-    sources = [SERIALIZATION / name for name in ("cdr_lengths.cpp", "length_plan.cpp")]
+    names = ("cdr_lengths.cpp", "cut_cdr.cpp", "length_plan.cpp")
+    sources = [SERIALIZATION / name for name in names]
     libraries = ["-lfastcdr", "-lrosidl_runtime_c", "-lrcutils"]
     options = (*sources, *libraries, "-Wl,--allow-shlib-undefined")
     assert compile_and_run(tmp_path, header, "fast_cdr_exception.cpp", *options) == 0
