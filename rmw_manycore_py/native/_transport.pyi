@@ -197,7 +197,7 @@ class CounterValues:
 
     @property
     def held(self) -> int:
-        """Subscription: messages that were read in place, and not copied."""
+        """Subscription: read in their record after the take, or copied once from there."""
 
 class EndpointInfo:
     """A publisher or subscription of a topic, or of a service's requests or replies."""

@@ -93,7 +93,7 @@ def _endpoint(look: Look, row: int, endpoint: Endpoint) -> Row:
         "rate": rate_text(messages / seconds),
         "size": bytes_text(int(changes[BYTES]) / messages) if messages > 0 else "",
         "queue": f"{counts[QUEUED]}/{counts[CAPACITY]}" if counts[CAPACITY] else "",
-        "in_place": f"{changes[HELD] / messages:.0%}" if changes[HELD] > 0 else "",
+        "held": f"{changes[HELD] / messages:.0%}" if changes[HELD] > 0 else "",
         "lost": int(counts[LOST] + counts[EXPIRED] + counts[REFUSED]),
         "deadlines_missed": int(counts[DEADLINES]),
     }

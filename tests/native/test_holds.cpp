@@ -294,6 +294,40 @@ TEST_CASE("loans are filled while their publisher goes on; what is not published
   CHECK(chunks_of(f, *publisher) <= 5);
 }
 
+TEST_CASE("what loans alone leave behind is freed as well") {
+  Fixture f;
+  const auto publisher = f.publisher(keep_last(200));
+  const auto subscription = f.subscription(keep_last(200));
+  for (uint64_t number = 1; number <= 1000; ++number) {
+    std::optional<Loan> loan = publisher->lend(sizeof(Payload));
+    REQUIRE(loan);
+    Payload{1, number, sizeof(Payload)}.write(loan->data());
+    publisher->publish(std::move(*loan), sizeof(Payload), 1);
+    if (number >= 200) {
+      take_all(*subscription);
+    }
+    if (number == 200) {
+      CHECK(chunks_of(f, *publisher) == 200);
+    }
+  }
+  CHECK(f.inspection.generations_of(*publisher) == 1);
+  CHECK(chunks_of(f, *publisher) < 200);
+}
+
+TEST_CASE("a repair of the registry finds chunks and their table") {
+  Fixture f;
+  const auto publisher = f.publisher(keep_last(100));
+  const auto subscription = f.subscription(keep_last(100));
+  for (uint64_t number = 1; number <= 100; ++number) {  // more than a block of the table has
+    publish(*publisher, number, min_chunk_message_bytes);
+  }
+  const uint64_t used = f.inspection.used_bytes();
+  f.inspection.registry().header().needs_repair = 1;
+  f.process->add_node("node", "/", "/");
+  CHECK(f.inspection.used_bytes() == used);
+  CHECK(take_all(*subscription) == numbers(1, 100));
+}
+
 TEST_CASE("a topic DSM of a fixed size has no chunks: it lends nothing, and nothing is held") {
   const TestPlatform platform;
   const Configurator configurator(

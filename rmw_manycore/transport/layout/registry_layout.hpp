@@ -104,7 +104,7 @@ struct EndpointCounters {
   /// Publisher: records recycled while a reader still wanted them.
   std::atomic<uint64_t> overwritten;
   std::atomic<uint64_t> dropped;  ///< publisher: records that did not reach a cluster
-  std::atomic<uint64_t> held;     ///< subscription: messages that were held, and not copied
+  std::atomic<uint64_t> held;     ///< subscription: messages whose record was held
 };
 
 /// A publisher or subscription.

@@ -30,7 +30,7 @@ struct CounterValues {
   uint64_t refused = 0;      ///< publisher: messages that did not fit
   uint64_t overwritten = 0;  ///< publisher: records recycled while a reader still wanted them
   uint64_t dropped = 0;      ///< publisher: records that did not reach a cluster
-  uint64_t held = 0;         ///< subscription: messages that were held, and not copied
+  uint64_t held = 0;         ///< subscription: messages whose record was held
 };
 
 /// A process in a snapshot of the graph.

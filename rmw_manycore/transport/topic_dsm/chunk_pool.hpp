@@ -15,7 +15,7 @@ class ChunkPool {
 public:
   enum class State {
     wanted,  ///< readers are owed the record
-    read,    ///< or hold it: nobody waits for it, but its bytes stay
+    read,    ///< a reader claims or holds it, none is owed it
     unused,
   };
 
@@ -23,6 +23,7 @@ public:
   uint64_t bytes() const noexcept { return bytes_; }
   /// Chunks with a record.
   uint64_t in_use() const noexcept { return used_.size() + kept_.size(); }
+  size_t unused() const noexcept { return unused_.size(); }
   uint64_t kept_bytes() const noexcept {
     uint64_t sum = 0;
     for (const Block & chunk : kept_) {
@@ -36,25 +37,20 @@ public:
   template<typename StateOf>
   void collect(StateOf state_of) {
     for (size_t i = 0; i < kept_.size();) {
-      if (state_of(kept_[i]) == State::read) {
+      if (state_of(kept_[i]) == State::unused) {
+        put_back(kept_[i]);
+        kept_[i] = kept_.back();
+        kept_.pop_back();
+      } else {
         ++i;
-        continue;
       }
-      put_back(kept_[i]);
-      kept_[i] = kept_.back();
-      kept_.pop_back();
     }
     while (!used_.empty()) {
       const State state = state_of(used_.front());
       if (state == State::wanted) {
         return;
       }
-      reserve(kept_);
-      if (state == State::read) {
-        kept_.push_back(used_.front());
-      } else {
-        put_back(used_.front());
-      }
+      (state == State::read ? kept_ : unused_).push_back(used_.front());
       used_.pop_front();
     }
   }
@@ -62,12 +58,15 @@ public:
   /// The oldest record that is wanted; collect() has just looked.
   const Block * oldest_wanted() noexcept { return used_.empty() ? nullptr : &used_.front(); }
 
-  void add(const Block & chunk) {
-    reserve(unused_);
-    put_back(chunk);
-    ++count_;
-    bytes_ += chunk.end - chunk.begin;
+  /// For one more chunk in any list: what follows cannot fail then.
+  void make_room() {
+    for (std::vector<Block> * list : {&kept_, &unused_, &unbacked_}) {
+      list->reserve(count_ + 1);
+    }
   }
+  void add(const Block & chunk) noexcept { add_to(unused_, chunk); }
+  /// A chunk whose SMEM could not be backed: it is the first one to be freed.
+  void add_unbacked(const Block & chunk) noexcept { add_to(unbacked_, chunk); }
   /// An unused chunk of at least `bytes`, the smallest one, unless much of it would be left over.
   /// Of several, the one used last: the others fall out of use.
   std::optional<Block> take(uint64_t bytes) noexcept {
@@ -80,27 +79,28 @@ public:
         best = &chunk;
       }
     }
-    return best == nullptr ? std::nullopt : std::optional(remove(*best));
+    return best == nullptr ? std::nullopt : std::optional(take_out(unused_, best));
   }
-  /// An unused chunk that was not used while the last `records` were published, or any.
-  std::optional<Block> take_idle(uint64_t newest, uint64_t records) noexcept {
-    for (const Block & chunk : unused_) {
-      if (chunk.number + records <= newest) {
-        return remove(chunk);
-      }
+  /// A chunk to free: one that is not backed, or was not used while the last `records` were
+  /// published.
+  const Block * idle(uint64_t newest, uint64_t records) const noexcept {
+    if (!unbacked_.empty()) {
+      return &unbacked_.back();
     }
-    return std::nullopt;
+    const auto found = std::find_if(unused_.begin(), unused_.end(), [&](const Block & chunk) {
+      return chunk.number + records <= newest;
+    });
+    return found == unused_.end() ? nullptr : &*found;
   }
-  void forget(const Block & chunk) noexcept {
+  /// One that idle() has returned, and that is freed.
+  void remove(const Block & idle) noexcept {
     --count_;
-    bytes_ -= chunk.end - chunk.begin;
+    bytes_ -= idle.end - idle.begin;
+    take_out(unbacked_.empty() ? unused_ : unbacked_, &idle);
   }
 
   /// The chunk has a record from now on.
-  void use(const Block & chunk) {
-    reserve(unused_);  // for put_back(), which must not fail
-    used_.push_back(chunk);
-  }
+  void use(const Block & chunk) { used_.push_back(chunk); }
   const Block & newest() noexcept { return used_.back(); }
   void put_back_newest() noexcept {
     put_back(used_.back());
@@ -109,19 +109,23 @@ public:
   void put_back(const Block & chunk) noexcept { unused_.push_back(chunk); }
 
 private:
-  /// Room for all chunks, so that none is lost for want of memory.
-  void reserve(std::vector<Block> & list) { list.reserve(count_ + 1); }
-  Block remove(const Block & chunk) noexcept {
-    const Block taken = chunk;
-    unused_.erase(unused_.begin() + (&chunk - unused_.data()));
+  void add_to(std::vector<Block> & list, const Block & chunk) noexcept {
+    list.push_back(chunk);
+    ++count_;
+    bytes_ += chunk.end - chunk.begin;
+  }
+  static Block take_out(std::vector<Block> & list, const Block * chunk) noexcept {
+    const Block taken = *chunk;
+    list.erase(list.begin() + (chunk - list.data()));
     return taken;
   }
 
   BlockRing used_;             ///< by number
   std::vector<Block> kept_;    ///< not wanted, but read or held
   std::vector<Block> unused_;  ///< in the order of their last use
-  uint64_t count_ = 0;         ///< of all chunks, lent ones included
-  uint64_t bytes_ = 0;         ///< likewise
+  std::vector<Block> unbacked_;
+  uint64_t count_ = 0;  ///< of all chunks, lent ones included
+  uint64_t bytes_ = 0;  ///< likewise
 };
 
 }  // namespace manycore

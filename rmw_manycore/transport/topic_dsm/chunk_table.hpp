@@ -14,7 +14,8 @@ inline EntryTable<ChunkEntry> chunks_of(const Cluster & cluster, TopicDsmHeader 
 }
 
 /// The entry of the chunk at an offset, or with `offset` = 0 a free one; nullptr if there is none.
-inline ChunkEntry * find_chunk(const Cluster & cluster, TopicDsmHeader & dsm, uint64_t offset) {
+inline ChunkEntry * find_chunk_entry(
+  const Cluster & cluster, TopicDsmHeader & dsm, uint64_t offset) {
   ChunkEntry * found = nullptr;
   chunks_of(cluster, dsm).visit([&](ChunkEntry & entry) {
     found = entry.offset.load(std::memory_order_relaxed) == offset ? &entry : nullptr;

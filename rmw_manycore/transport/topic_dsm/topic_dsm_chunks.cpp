@@ -11,7 +11,7 @@
 namespace manycore {
 namespace {
 
-/// A chunk that was not used for so many records is freed.
+/// A chunk is freed when this many records were published without it.
 constexpr uint64_t idle_records = 256;
 constexpr uint64_t records_between_looks = 16;
 
@@ -34,37 +34,19 @@ bool TopicDsmWriter::goes_to_chunk(uint64_t size_bytes) const noexcept {
   return size_bytes >= min_chunk_message_bytes && size_bytes <= UINT32_MAX && has_chunks();
 }
 
-/// A record that is in no generation any more is not wanted, and no reader claims it.
-RecordDescriptor * TopicDsmWriter::find_descriptor(uint64_t number) noexcept {
-  if (number >= current_.first) {
-    return &current_.descriptor(number);
-  }
-  for (const Generation & old : old_) {
-    if (old.first <= number && number < old.end) {
-      return &old.descriptor(number);
-    }
-  }
-  return nullptr;
-}
-
-/// As reclaim(), and then looks whether it is held: a reader stores its hold before it ends its
-/// claim.
+/// A reader stores its hold before it ends its claim, so holds are looked for after claims.
 ChunkPool::State TopicDsmWriter::state_of(const Block & chunk) {
-  RecordDescriptor * const record = find_descriptor(chunk.number);
-  if (record != nullptr && record->number.load(std::memory_order_relaxed) == chunk.number) {
-    if (is_wanted(chunk.number, *record)) {
-      return ChunkPool::State::wanted;
-    }
-    record->number.store(no_record, std::memory_order_seq_cst);
-    if (chunk.number >= current_.first) {
-      pinned_in_slot_[chunk.number & (current_.count - 1)] = chunk.number;
-    }
-    readers_.refresh(start());
-    readers_.require_all(endpoint_.topic);
+  const Reclaim reclaimed = reclaim(chunk.number, false);
+  if (reclaimed == Reclaim::wanted) {
+    return ChunkPool::State::wanted;
   }
   const bool is_read =
-    readers_.is_pinned(chunk.number) || is_held(registry_, *cluster_.find<ChunkHead>(chunk.begin));
+    reclaimed == Reclaim::pinned || is_held(registry_, *cluster_.find<ChunkHead>(chunk.begin));
   return is_read ? ChunkPool::State::read : ChunkPool::State::unused;
+}
+
+void TopicDsmWriter::collect_chunks() {
+  chunks_.collect([this](const Block & chunk) { return state_of(chunk); });
 }
 
 TopicDsmWriter::Room TopicDsmWriter::room_in(const Block & chunk) const noexcept {
@@ -72,9 +54,9 @@ TopicDsmWriter::Room TopicDsmWriter::room_in(const Block & chunk) const noexcept
 }
 
 TopicDsmWriter::Room TopicDsmWriter::find_chunk_room(uint64_t size_bytes) {
-  const Block chunk = lend(size_bytes);
+  const Block chunk = find_chunk(size_bytes);
   try {
-    take_back(chunk);
+    use_chunk(chunk);
   } catch (...) {
     chunks_.put_back(chunk);
     throw;
@@ -83,26 +65,30 @@ TopicDsmWriter::Room TopicDsmWriter::find_chunk_room(uint64_t size_bytes) {
 }
 
 Block TopicDsmWriter::lend(uint64_t size_bytes) {
-  blocked_until_ns_ = 0;
-  readers_.require_all(endpoint_.topic);
-  chunks_.collect([this](const Block & chunk) { return state_of(chunk); });
-  return get_chunk(size_bytes, chunk::bytes_for(size_bytes));
+  prepare();
+  return find_chunk(size_bytes);
 }
 
-void TopicDsmWriter::take_back(Block chunk) {
-  readers_.require_all(endpoint_.topic);
+void TopicDsmWriter::take_back(const Block & chunk) {
+  prepare();
+  use_chunk(chunk);
+}
+
+void TopicDsmWriter::use_chunk(Block chunk) {
   claim_descriptor(record_alignment);
   chunk.number = next_number_;
   chunks_.use(chunk);
   is_chunk_in_work_ = true;
 }
 
-Block TopicDsmWriter::get_chunk(uint64_t message_bytes, uint64_t bytes) {
+Block TopicDsmWriter::find_chunk(uint64_t message_bytes) {
   if (message_bytes > cluster_.size() / 2) {
     refuse_chunk(message_bytes, Error(ErrorCode::too_large, "it is too large"));
   }
+  const uint64_t bytes = chunk::bytes_for(message_bytes);
   const uint64_t usual = std::exchange(chunk_bytes_, bytes);
   while (true) {
+    collect_chunks();
     if (const std::optional<Block> unused = chunks_.take(bytes)) {
       return *unused;
     }
@@ -116,26 +102,9 @@ Block TopicDsmWriter::get_chunk(uint64_t message_bytes, uint64_t bytes) {
       if (oldest == nullptr) {
         refuse_chunk(message_bytes, error);
       }
-      give_up_record(oldest->number);
+      give_up(oldest->number);
     }
-    chunks_.collect([this](const Block & chunk) { return state_of(chunk); });
   }
-}
-
-/// For want of SMEM: waits for the readers of a record that is owed to them, or overwrites it.
-void TopicDsmWriter::give_up_record(uint64_t number) {
-  if (is_owed(number)) {
-    wait_for_progress(number);
-    return;
-  }
-  RecordDescriptor & record = *find_descriptor(number);
-  endpoint_.counters.overwritten.fetch_add(1, std::memory_order_relaxed);
-  record.number.store(no_record, std::memory_order_seq_cst);
-  if (number >= current_.first) {
-    pinned_in_slot_[number & (current_.count - 1)] = number;
-  }
-  readers_.refresh(start());
-  readers_.require_all(endpoint_.topic);
 }
 
 /// Backed without the registry lock: if this process dies, the reaper finds the entry.
@@ -143,6 +112,7 @@ Block TopicDsmWriter::make_chunk(uint64_t bytes) {
   if (chunks_.bytes() + bytes > cluster_.size() / 2 + chunk::bytes_for(0)) {
     throw Error(ErrorCode::no_space, "it has half of the SMEM of its cluster already");
   }
+  chunks_.make_room();
   ChunkEntry & entry = free_chunk_entry();
   {
     const Registry::Lock lock = lock_to_grow();
@@ -154,16 +124,16 @@ Block TopicDsmWriter::make_chunk(uint64_t bytes) {
   try {
     cluster_.require_file_system_room(bytes);
     chunk::open(cluster_, entry);
-    chunks_.add(chunk);
-  } catch (...) {
-    free_chunk(chunk);
+  } catch (const Error &) {
+    chunks_.add_unbacked(chunk);
     throw;
   }
+  chunks_.add(chunk);
   return *chunks_.take(bytes);
 }
 
 ChunkEntry & TopicDsmWriter::free_chunk_entry() {
-  if (ChunkEntry * const entry = manycore::find_chunk(cluster_, dsm_, 0)) {
+  if (ChunkEntry * const entry = find_chunk_entry(cluster_, dsm_, 0)) {
     return *entry;
   }
   cluster_.back_ahead();
@@ -177,7 +147,7 @@ ChunkEntry & TopicDsmWriter::free_chunk_entry() {
 bool TopicDsmWriter::free_chunk(const Block & chunk) noexcept {
   try {
     std::optional<BlockInHand> hand = BlockInHand::try_make(registry_);
-    ChunkEntry * const entry = manycore::find_chunk(cluster_, dsm_, chunk.begin);
+    ChunkEntry * const entry = find_chunk_entry(cluster_, dsm_, chunk.begin);
     if (!hand || entry == nullptr) {
       return false;
     }
@@ -190,24 +160,20 @@ bool TopicDsmWriter::free_chunk(const Block & chunk) noexcept {
 }
 
 bool TopicDsmWriter::free_idle_chunk(uint64_t records) noexcept {
-  const std::optional<Block> idle = chunks_.take_idle(last_number_, records);
-  if (!idle) {
+  const Block * const idle = chunks_.idle(last_number_, records);
+  if (idle == nullptr || !free_chunk(*idle)) {
     return false;
   }
-  if (!free_chunk(*idle)) {
-    chunks_.put_back(*idle);
-    return false;
-  }
-  chunks_.forget(*idle);
+  chunks_.remove(*idle);
   return true;
 }
 
+/// False if that leaves no more SMEM than there was before a chunk could not be backed.
 bool TopicDsmWriter::free_unused_chunks() noexcept {
-  bool is_any_freed = false;
+  const size_t before = chunks_.unused();
   while (free_idle_chunk(0)) {
-    is_any_freed = true;
   }
-  return is_any_freed;
+  return chunks_.unused() < before;
 }
 
 void TopicDsmWriter::refuse_chunk(uint64_t message_bytes, const Error & error) {
@@ -226,13 +192,13 @@ void TopicDsmWriter::refuse_chunk(uint64_t message_bytes, const Error & error) {
 /// One at a time, now and then: that takes the registry lock.
 void TopicDsmWriter::free_idle_chunks() {
   if (chunks_.bytes() != 0 && next_number_ % records_between_looks == 0) {
-    chunks_.collect([this](const Block & chunk) { return state_of(chunk); });
+    collect_chunks();
     free_idle_chunk(idle_records);
   }
 }
 
 /// Returns the offset of the record's bytes.
-uint64_t TopicDsmWriter::use_chunk() noexcept {
+uint64_t TopicDsmWriter::commit_chunk() noexcept {
   is_chunk_in_work_ = false;
   return chunks_.newest().begin + chunk_data;
 }

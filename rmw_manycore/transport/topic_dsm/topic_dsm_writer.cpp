@@ -129,19 +129,35 @@ bool TopicDsmWriter::is_wanted(uint64_t number, const RecordDescriptor & record)
 }
 
 /// RELIABLE + KEEP_ALL, and a reliable reader still wants the record: it must not be overwritten.
-bool TopicDsmWriter::is_owed(uint64_t number) noexcept {
-  const RecordDescriptor & record = *find_descriptor(number);
-  const Readers readers = readers_of(record);
-  return dsm_.keep_all != 0 && endpoint_.qos.reliability == Reliability::reliable &&
-         std::any_of(readers.begin(), readers.end(), [&](const Reader & reader) {
-           return reader.reliable && wants(reader, number, record);
-         });
+bool TopicDsmWriter::is_owed(uint64_t number) const noexcept {
+  const RecordDescriptor * const record = find_descriptor(number);
+  if (
+    record == nullptr || dsm_.keep_all == 0 || endpoint_.qos.reliability != Reliability::reliable) {
+    return false;
+  }
+  const Readers readers = readers_of(*record);
+  return std::any_of(readers.begin(), readers.end(), [&](const Reader & reader) {
+    return reader.reliable && wants(reader, number, *record);
+  });
+}
+
+/// A record that is in no generation any more is not wanted, and no reader claims it.
+RecordDescriptor * TopicDsmWriter::find_descriptor(uint64_t number) const noexcept {
+  if (number >= current_.first) {
+    return &current_.descriptor(number);
+  }
+  for (const Generation & old : old_) {
+    if (old.first <= number && number < old.end) {
+      return &old.descriptor(number);
+    }
+  }
+  return nullptr;
 }
 
 TopicDsmWriter::Reclaim TopicDsmWriter::reclaim(uint64_t number, bool force) {
-  RecordDescriptor & record = current_.descriptor(number);
-  if (record.number.load(std::memory_order_relaxed) == number) {
-    const bool wanted = is_wanted(number, record);
+  RecordDescriptor * const record = find_descriptor(number);
+  if (record != nullptr && record->number.load(std::memory_order_relaxed) == number) {
+    const bool wanted = is_wanted(number, *record);
     if (wanted && !force) {
       return Reclaim::wanted;
     }
@@ -150,8 +166,10 @@ TopicDsmWriter::Reclaim TopicDsmWriter::reclaim(uint64_t number, bool force) {
     }
     // Dekker with the claim: the reader stores `reading` before it loads `number`. Rebuild the
     // reader list after the store, so that a reader that has just joined is checked as well.
-    record.number.store(no_record, std::memory_order_seq_cst);
-    pinned_in_slot_[number & (current_.count - 1)] = number;  // until seen unpinned
+    record->number.store(no_record, std::memory_order_seq_cst);
+    if (number >= current_.first) {
+      pinned_in_slot_[number & (current_.count - 1)] = number;  // until seen unpinned
+    }
     readers_.refresh(start());
     readers_.require_all(endpoint_.topic);
   }
@@ -196,14 +214,18 @@ void TopicDsmWriter::wait_for_progress(uint64_t number) {
 }
 
 void TopicDsmWriter::make_place(uint64_t number, uint64_t need_bytes) {
-  if (grow_to_hold_more(need_bytes)) {
-    return;
+  if (!grow_to_hold_more(need_bytes)) {
+    give_up(number);
   }
+}
+
+/// Waits for the readers of a record that is owed to them, or overwrites it.
+void TopicDsmWriter::give_up(uint64_t number) {
   if (is_owed(number)) {
     wait_for_progress(number);
-    return;
+  } else {
+    reclaim(number, true);
   }
-  reclaim(number, true);
 }
 
 /// Advances next_number_ to a number whose descriptor may be written. Numbers whose descriptor a
@@ -285,8 +307,8 @@ bool TopicDsmWriter::try_place(uint64_t need_bytes) {
   }
 }
 
-TopicDsmWriter::Room TopicDsmWriter::find_room(uint64_t size_bytes) {
-  const uint64_t need = align_up(std::max<uint64_t>(size_bytes, 1), record_alignment);
+/// What each message begins with: memory that is free by now is taken back.
+void TopicDsmWriter::prepare() {
   blocked_until_ns_ = 0;
   readers_.require_all(endpoint_.topic);
   if (!old_.empty()) {
@@ -294,9 +316,14 @@ TopicDsmWriter::Room TopicDsmWriter::find_room(uint64_t size_bytes) {
   }
   reclaim_free_records();
   free_idle_chunks();
+}
+
+TopicDsmWriter::Room TopicDsmWriter::find_room(uint64_t size_bytes) {
+  prepare();
   if (goes_to_chunk(size_bytes)) {
     return find_chunk_room(size_bytes);
   }
+  const uint64_t need = align_up(std::max<uint64_t>(size_bytes, 1), record_alignment);
   if (demand_.is_known()) {
     shrink(need);
   }
@@ -347,7 +374,7 @@ void TopicDsmWriter::announce_reply(const RecordDescriptor & record) const noexc
 }
 
 /// Ends the room in the ring with the bytes used. Returns their offset.
-uint64_t TopicDsmWriter::use_block(uint64_t size_bytes) noexcept {
+uint64_t TopicDsmWriter::commit_block(uint64_t size_bytes) noexcept {
   Block & block = blocks_.back();
   blocks_.shrink_back(block.begin + align_up(std::max<uint64_t>(size_bytes, 1), record_alignment));
   block.number = next_number_;
@@ -360,7 +387,7 @@ uint64_t TopicDsmWriter::commit(
   const Correlation & correlation) {
   RecordDescriptor & record = current_.descriptor(next_number_);
   const bool is_in_chunk = is_chunk_in_work_;
-  record.offset = is_in_chunk ? use_chunk() : use_block(size_bytes);
+  record.offset = is_in_chunk ? commit_chunk() : commit_block(size_bytes);
   record.memory.store(
     is_in_chunk ? RecordMemory::chunk : RecordMemory::ring, std::memory_order_relaxed);
   record.size_bytes = static_cast<uint32_t>(size_bytes);

@@ -44,7 +44,7 @@ public:
   Block lend(uint64_t size_bytes);
   /// Makes a lent chunk the room of the next commit(), in place of find_room(). If it throws, the
   /// chunk stays with the caller.
-  void take_back(Block chunk);
+  void take_back(const Block & chunk);
   void give_back(const Block & chunk) noexcept { chunks_.put_back(chunk); }
   Room room_in(const Block & chunk) const noexcept;
   /// Gives back the room of the last find_room().
@@ -75,11 +75,13 @@ private:
     return {last_number_, is_of_replies() ? 0 : last_sequence_number_};
   }
   void number_reply(RecordDescriptor & record) const noexcept;
-  uint64_t use_block(uint64_t size_bytes) noexcept;
-  uint64_t use_chunk() noexcept;
+  uint64_t commit_block(uint64_t size_bytes) noexcept;
+  uint64_t commit_chunk() noexcept;
   void announce_reply(const RecordDescriptor & record) const noexcept;
   bool is_wanted(uint64_t number, const RecordDescriptor & record) const noexcept;
-  bool is_owed(uint64_t number) noexcept;
+  bool is_owed(uint64_t number) const noexcept;
+  RecordDescriptor * find_descriptor(uint64_t number) const noexcept;
+  void prepare();
   Reclaim reclaim(uint64_t number, bool force);
   void reclaim_free_records();
   bool drain(Generation & old);
@@ -91,6 +93,7 @@ private:
   /// Makes room where a wanted record lies: grows the ring, waits (RELIABLE + KEEP_ALL) or
   /// overwrites.
   void make_place(uint64_t number, uint64_t need_bytes);
+  void give_up(uint64_t number);
   void claim_descriptor(uint64_t need_bytes);
   bool try_place(uint64_t need_bytes);
   uint64_t max_descriptors() const noexcept;
@@ -114,21 +117,22 @@ private:
   std::string refusal_text(uint64_t need_bytes) const;
   void wait_for_progress(uint64_t number);
   uint64_t data_limit() const noexcept;
-  /// Records that readers want or read, and that no room is taken from.
+  /// Records with room in the ring, or in a chunk.
   uint64_t held_records() const noexcept { return blocks_.size() + chunks_.in_use(); }
   // In topic_dsm_chunks.cpp:
   bool goes_to_chunk(uint64_t size_bytes) const noexcept;
   Room find_chunk_room(uint64_t size_bytes);
   ChunkPool::State state_of(const Block & chunk);
-  RecordDescriptor * find_descriptor(uint64_t number) noexcept;
-  /// Room for a chunk of `bytes`, made by overwriting or waiting if SMEM is short.
-  Block get_chunk(uint64_t message_bytes, uint64_t bytes);
+  void collect_chunks();
+  /// If SMEM is short, waits for readers or overwrites records.
+  Block find_chunk(uint64_t message_bytes);
+  /// The room of the next commit().
+  void use_chunk(Block chunk);
   Block make_chunk(uint64_t bytes);
   bool free_chunk(const Block & chunk) noexcept;
   bool free_idle_chunk(uint64_t records) noexcept;
   void free_idle_chunks();
   bool free_unused_chunks() noexcept;
-  void give_up_record(uint64_t number);
   ChunkEntry & free_chunk_entry();
   [[noreturn]] void refuse_chunk(uint64_t message_bytes, const Error & error);
   bool has_one_reader() const noexcept;

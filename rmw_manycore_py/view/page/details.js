@@ -4,12 +4,12 @@
 import { Charts } from "./charts.js";
 import { post } from "./requests.js";
 
-const FIGURES = ["rate", "size", "in_place", "queue", "lost", "deadlines_missed", "qos"];
+const FIGURES = ["rate", "size", "held", "queue", "lost", "deadlines_missed", "qos"];
 const COLUMNS = {
   node: ["kind", "topic", "type", ...FIGURES],
   topic: ["kind", "node", ...FIGURES],
 };
-const HEADS = { in_place: "in place", deadlines_missed: "deadlines missed", qos: "QoS" };
+const HEADS = { deadlines_missed: "deadlines missed", qos: "QoS" };
 
 export class Details {
   // onLost: called with what was shown, when the element that had opened it is gone.
