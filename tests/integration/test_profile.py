@@ -58,6 +58,7 @@ def test_a_profile_says_what_nodes_do(start, tmp_path: Path, platform) -> None:
     path = tmp_path / "app.profile.json"
     run = start(manycore_command("profile", "record", mapfile, "--duration", "3", "-o", path))
     assert run.wait() == 0, run
+    assert "trace.csv" not in run.output  # a temporary file, gone by now
     profile = load(path)
     assert [node.name for node in profile.nodes] == ["/worker"]
     timer, subscription = of_kind(profile, "timer"), of_kind(profile, "subscription")
@@ -79,6 +80,15 @@ def test_a_profile_says_what_nodes_do(start, tmp_path: Path, platform) -> None:
     assert (subscription.trigger, profile.publishers[heard.publisher].topic) == ("/done", "/heard")
     assert heard.count is not None
     assert abs(heard.count - done.count) <= 2  # at either end
+
+
+def test_a_profile_may_last_until_the_run_is_stopped(start, tmp_path: Path, platform) -> None:
+    path = tmp_path / "app.profile.json"
+    words = ("profile", "record", "talker_listener", "--duration", "inf", "-o", path)
+    run = start(manycore_command(*words))
+    run.wait_for("I heard: 'Hello World: 3'")
+    assert run.stop() == 0, run
+    assert any(one.kind == "subscription" for one in load(path).callbacks)
 
 
 def test_a_trace_is_imported_and_shown(start, tmp_path: Path) -> None:

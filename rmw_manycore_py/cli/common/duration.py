@@ -10,7 +10,10 @@ from typing import Any
 import click
 
 
-def duration_option(default_s: float | None = None) -> Callable[[Any], Any]:
+def duration_option(
+    default_s: float | None = None,
+    text: str = "Stop after this many seconds, counted from the start of the last node.",
+) -> Callable[[Any], Any]:
     """Return the option `--duration`, in seconds."""
     return click.option(
         "--duration",
@@ -20,7 +23,7 @@ def duration_option(default_s: float | None = None) -> Callable[[Any], Any]:
         default=default_s,
         show_default=default_s is not None,
         callback=_number,
-        help="Stop after this many seconds, counted from the start of the last node.",
+        help=text,
     )
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from rmw_manycore_py.cli.common.finite_range import FiniteRange
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import OutputFile
 from rmw_manycore_py.cli.common.printing import echo
@@ -36,7 +37,7 @@ from rmw_manycore_py.profile.ros2_tracing import Window
 @click.option(
     "--begin",
     "begin_s",
-    type=click.FloatRange(min=0),
+    type=FiniteRange(min=0),
     default=0.0,
     metavar="S",
     help="Skip callbacks of the first S seconds of a trace.",
@@ -44,7 +45,7 @@ from rmw_manycore_py.profile.ros2_tracing import Window
 @click.option(
     "--end",
     "end_s",
-    type=click.FloatRange(min=0, min_open=True),
+    type=FiniteRange(min=0, min_open=True),
     metavar="S",
     help="Skip callbacks after the first S seconds of a trace.",
 )

@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 
 import click
 
+from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import OutputFile
@@ -32,15 +33,7 @@ from rmw_manycore_py.trace.files import load
     ),
 )
 @mapfile_argument()
-@click.option(
-    "--duration",
-    "duration_s",
-    type=click.FloatRange(min=0, min_open=True),
-    metavar="S",
-    default=60.0,
-    show_default=True,
-    help="Record this many seconds from the start of the last node.",
-)
+@duration_option(60.0, "Record this many seconds from the start of the last node.")
 @click.option(
     "-o",
     "--output",
@@ -74,7 +67,7 @@ def command(mapfile: Path, duration_s: float, output: Path) -> None:
             raise ManycoreError("the run ended before all nodes had started: nothing was recorded")
         ended_ns = time.monotonic_ns()
         trace = load(path)
-    last_ns = min(ended_ns, started_ns[0] + round(duration_s * 1e9))
+    last_ns = round(min(ended_ns, started_ns[0] + duration_s * 1e9))
     profile = profile_of(trace, started_ns[0], last_ns)
     save(profile, output)
     if trace.lost:

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Any
 
 import click
 
+from rmw_manycore_py.cli.common.finite_range import FiniteRange
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.topic.outside import leave_middleware
 from rmw_manycore_py.cli.topic.selection_options import (
@@ -21,20 +21,7 @@ from rmw_manycore_py.recording.mcap_support import require_library
 from rmw_manycore_py.recording.selection import Selection
 from rmw_manycore_py.ros.names import expand
 
-_MAX_NUMBER = 1e12
 _CLOCK_HZ = 40.0  # as `ros2 bag play --clock`
-
-
-class _Number(click.FloatRange):
-    """A range of finite numbers whose value in nanoseconds fits."""
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, context: click.Context | None
-    ) -> float:
-        number = float(super().convert(value, param, context))
-        if not abs(number) <= _MAX_NUMBER:
-            self.fail(f"expected a number up to {_MAX_NUMBER:g}, found {value}.", param, context)
-        return number
 
 
 def _remappings(
@@ -62,7 +49,7 @@ def _remappings(
 @click.option(
     "-r",
     "--rate",
-    type=_Number(0.01, 1000),
+    type=FiniteRange(0.01, 1000),
     default=1.0,
     show_default=True,
     help="Playback speed relative to the recording.",
@@ -91,7 +78,7 @@ def _remappings(
     "--clock",
     "clock_hz",
     metavar="[HZ]",
-    type=_Number(min=0, min_open=True),
+    type=FiniteRange(min=0, min_open=True),
     is_flag=False,
     flag_value=_CLOCK_HZ,
     help=f"Publish /clock, {_CLOCK_HZ:g} times per second by default.",
@@ -101,7 +88,7 @@ def _remappings(
     "--delay",
     "delay_s",
     metavar="S",
-    type=_Number(min=0),
+    type=FiniteRange(min=0),
     default=0.0,
     help="Wait S seconds before the first message.",
 )
@@ -109,7 +96,7 @@ def _remappings(
     "--start-offset",
     "offset_s",
     metavar="S",
-    type=_Number(min=0),
+    type=FiniteRange(min=0),
     default=0.0,
     help="Skip the first S seconds of the recording.",
 )
@@ -118,7 +105,7 @@ def _remappings(
     "--playback-duration",
     "duration_s",
     metavar="S",
-    type=_Number(min=0),
+    type=FiniteRange(min=0),
     help="Play only S seconds of the recording.",
 )
 @click.option("-p", "--start-paused", "paused", is_flag=True, help="Start paused.")

@@ -181,10 +181,18 @@ def test_a_program_that_does_not_exist_is_found_before_the_run(mapfile: Path) ->
     assert "no-such-program" in result.output
 
 
-def test_a_duration_is_a_number(mapfile: Path) -> None:
-    result = manycore("run", str(mapfile), "--duration", "nan")
+@pytest.mark.parametrize("verb", [("run",), ("profile", "record")])
+def test_a_duration_is_a_number(verb: tuple[str, ...], mapfile: Path) -> None:
+    result = manycore(*verb, str(mapfile), "--duration", "nan")
     assert result.exit_code == EXIT_BAD_INPUT
     assert "not a number of seconds" in result.output
+
+
+@pytest.mark.parametrize("words", [("--begin", "nan"), ("--end", "nan"), ("--end", "inf")])
+def test_a_part_of_a_trace_is_finite(words: tuple[str, str], tmp_path: Path) -> None:
+    result = manycore("profile", "import", str(tmp_path), *words)
+    assert result.exit_code == EXIT_BAD_INPUT
+    assert f"expected a number up to 1e+12, found {words[1]}." in result.output
 
 
 def test_map_check_and_show(mapfile: Path) -> None:
