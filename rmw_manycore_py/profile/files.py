@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ from pydantic import BaseModel, ValidationError
 
 from rmw_manycore_py.errors import FileError, ManycoreError, Problem
 from rmw_manycore_py.profile.model import FORMAT, VERSION, Profile
+from rmw_manycore_py.whole_file import replacing
 
 
 class _Head(BaseModel):
@@ -27,19 +27,12 @@ def save(profile: Profile, path: Path) -> None:
 
     :raises ManycoreError: if the file cannot be written.
     """
-    written: Path | None = None
     try:
-        descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        written = Path(name)
-        with open(descriptor, "w", encoding="utf-8") as file:
-            file.write(to_text(profile))
+        with replacing(path) as file:
+            file.write(to_text(profile).encode())
             os.fchmod(file.fileno(), 0o666 & ~_umask())
-        written.replace(path)
     except OSError as error:
         raise ManycoreError(f"{path}: cannot be written: {error.strerror or error}") from error
-    finally:
-        if written is not None:
-            written.unlink(missing_ok=True)
 
 
 def load(path: Path) -> Profile:

@@ -34,6 +34,7 @@ LAYERS = [
         "rmw_manycore_program",
         ".errors",
         ".examples",
+        ".whole_file",
     ),
     (".native",),
     (".process", ".ros", ".trace"),

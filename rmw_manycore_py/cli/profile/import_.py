@@ -9,10 +9,7 @@ import click
 
 from rmw_manycore_py.cli.common.finite_range import FiniteRange
 from rmw_manycore_py.cli.common.options import examples
-from rmw_manycore_py.cli.common.output_file import OutputFile
-from rmw_manycore_py.cli.common.printing import echo
-from rmw_manycore_py.cli.profile.text import summary_text
-from rmw_manycore_py.profile.files import save
+from rmw_manycore_py.cli.profile.output import output_option, write
 from rmw_manycore_py.profile.importing import import_source
 from rmw_manycore_py.profile.ros2_tracing import Window
 
@@ -26,14 +23,7 @@ from rmw_manycore_py.profile.ros2_tracing import Window
     ),
 )
 @click.argument("source", type=click.Path(exists=True, file_okay=False, path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    type=OutputFile(".json"),
-    default="app.profile.json",
-    show_default=True,
-    help="File to write.",
-)
+@output_option
 @click.option(
     "--begin",
     "begin_s",
@@ -59,5 +49,4 @@ def command(source: Path, output: Path, begin_s: float, end_s: float | None) -> 
         raise click.UsageError(f"expected --begin before --end, found {begin_s:g} and {end_s:g}")
     end_ns = None if end_s is None else round(end_s * 1e9)
     profile = import_source(source, Window(round(begin_s * 1e9), end_ns))
-    save(profile, output)
-    echo(f"{output}: {summary_text(profile)}")
+    write(profile, output)

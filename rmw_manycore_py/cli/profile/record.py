@@ -13,14 +13,12 @@ import click
 from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples
-from rmw_manycore_py.cli.common.output_file import OutputFile
-from rmw_manycore_py.cli.common.printing import echo, print_notices
+from rmw_manycore_py.cli.common.printing import print_notices
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.cli.common.starting import prepared_run
-from rmw_manycore_py.cli.profile.text import summary_text
+from rmw_manycore_py.cli.profile.output import output_option, write
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.events import Event, Notice
-from rmw_manycore_py.profile.files import save
 from rmw_manycore_py.profile.recorded import profile_of
 from rmw_manycore_py.trace.files import load
 
@@ -34,14 +32,7 @@ from rmw_manycore_py.trace.files import load
 )
 @mapfile_argument()
 @duration_option(60.0, "Record this many seconds from the start of the last node.")
-@click.option(
-    "-o",
-    "--output",
-    type=OutputFile(".json"),
-    default="app.profile.json",
-    show_default=True,
-    help="File to write.",
-)
+@output_option
 def command(mapfile: Path, duration_s: float, output: Path) -> None:
     """Run the nodes of MAPFILE and make their profile.
 
@@ -69,8 +60,7 @@ def command(mapfile: Path, duration_s: float, output: Path) -> None:
         trace = load(path)
     last_ns = round(min(ended_ns, started_ns[0] + duration_s * 1e9))
     profile = profile_of(trace, started_ns[0], last_ns)
-    save(profile, output)
     if trace.lost:
         print_notices([f"{trace.lost} events were lost because rings were full: record less"])
-    echo(f"{output}: {summary_text(profile)}")
+    write(profile, output)
     sys.exit(status)

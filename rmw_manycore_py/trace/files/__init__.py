@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from pathlib import Path
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.trace.events import Trace
 from rmw_manycore_py.trace.files import chrome, perfetto, table
+from rmw_manycore_py.whole_file import replacing
 
 PERFETTO = (".pftrace", ".perfetto-trace")
 SUFFIXES = (".json", ".csv", *PERFETTO)
@@ -21,25 +20,18 @@ def save(trace: Trace, path: Path) -> None:
     :raises ManycoreError: if the file cannot be written.
     """
     try:
-        descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    except OSError as error:
-        raise _unwritable(path, error) from error
-    written = Path(name)
-    try:
-        with open(descriptor, "wb") as file:
+        with replacing(path) as file:
             if path.suffix == ".json":
                 chrome.write(trace, file)
             elif path.suffix == ".csv":
                 table.write(trace, file)
             else:
                 perfetto.write(trace, file)
-            file.flush()
-            os.fsync(file.fileno())
-        written.replace(path)
     except OSError as error:
-        raise _unwritable(path, error) from error
-    finally:
-        written.unlink(missing_ok=True)
+        raise ManycoreError(
+            f"{path}: cannot be written: {error.strerror or error}; "
+            "the trace is kept: save it elsewhere"
+        ) from error
 
 
 def load(path: Path) -> Trace:
@@ -56,10 +48,3 @@ def load(path: Path) -> Trace:
     if path.suffix == ".json":
         return chrome.read(content, path)
     return perfetto.read(content, path)
-
-
-def _unwritable(path: Path, error: OSError) -> ManycoreError:
-    return ManycoreError(
-        f"{path}: cannot be written: {error.strerror or error}; "
-        "the trace is kept: save it elsewhere"
-    )
