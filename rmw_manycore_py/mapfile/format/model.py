@@ -44,7 +44,7 @@ MAX_CLUSTERS = 64
 MAX_CORES = 1024
 # Each is a pair of processes.
 MAX_LANES = MAX_CORES // 2
-# A node without topics of its own needs almost 64 KiB of a cluster.
+# Of a cluster without nodes; one node of rclpy takes 100 KiB (platform/smem.py).
 MIN_SMEM_BYTES = 64 << 10
 MAX_SMEM_BYTES = 1 << 40
 # Limited by a 32-bit field of the topic table.

@@ -194,7 +194,8 @@ class ClusterMemory:
     :param topic_dsms: rings of fixed size, by topic.
     :param nodes: the nodes' own endpoints, and the heads of topic DSMs.
     :param queues: subscriptions of topics with their queues.
-    :param growing: topics published here whose rings grow beyond what `nodes` has of them.
+    :param growing: topics published here without a fixed size: beyond what `nodes` has of them,
+        their rings grow, and large messages take chunks.
     """
 
     cluster: int
