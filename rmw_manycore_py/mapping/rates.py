@@ -41,8 +41,8 @@ class TracedFacts:
     :param receive_threads: their loads, of those that get a message.
     :param not_traced: nodes of the mapfile without a message in the trace.
     :param largest: bytes of the largest message, by topic.
-    :param peak_smem_bytes: most SMEM that was in use, by cluster, if the nodes were in the same
-        clusters as in the mapfile; else empty.
+    :param peak_smem_bytes: by cluster, if the nodes were in the same clusters as in the mapfile;
+        else empty.
     """
 
     recorded: Recorded

@@ -72,17 +72,19 @@ class Recorded:
         """Publications of topics by endpoint."""
         found: dict[int, Count] = {}
         for events in _events(self.trace, Kind.WRITE):
-            own = self._within(events)
-            ids, inverse = np.unique(endpoint_ids(own), return_inverse=True)
-            for number, endpoint in enumerate(ids.tolist()):
-                sizes = own["value"][inverse == number].astype(np.int64)
+            within = self._within(events)
+            ids = endpoint_ids(within)
+            for own in split_by(ids):
+                endpoint = int(ids[own[0]])
+                if self.topic(endpoint) is None:
+                    continue
+                sizes = within["value"][own].astype(np.int64)
                 known = found.get(endpoint, Count(0, 0, 0))
-                if self.topic(endpoint) is not None:
-                    found[endpoint] = Count(
-                        known.messages + len(sizes),
-                        known.size_bytes + int(sizes.sum()),
-                        max(known.largest_bytes, int(sizes.max())),
-                    )
+                found[endpoint] = Count(
+                    known.messages + len(sizes),
+                    known.size_bytes + int(sizes.sum()),
+                    max(known.largest_bytes, int(sizes.max())),
+                )
         return found
 
     def topic(self, endpoint: int) -> Endpoint | None:
@@ -114,7 +116,7 @@ class Recorded:
             )
 
     def peak_smem_bytes(self) -> dict[int, int]:
-        """Return the most SMEM that was in use, by cluster, with all that had grown."""
+        """Return the peak of SMEM in use, by cluster, with all rings and chunks."""
         samples = merged(list(self.trace.threads()), (Kind.SMEM,))
         return {
             int(samples["number"][own[0]]): int(samples["value"][own].max())
@@ -150,8 +152,9 @@ def _publishing_ns(trace: Trace) -> tuple[int, int]:
     """Return the times of the first and the last message, of topics if there are any."""
     found: dict[bool, list[int]] = {True: [], False: []}
     for events in _events(trace, Kind.WRITE):
-        for own in split_by(endpoint_ids(events)):
-            endpoint = int(endpoint_ids(events[own[:1]])[0])
+        ids = endpoint_ids(events)
+        for own in split_by(ids):
+            endpoint = int(ids[own[0]])
             named = trace.endpoints.get(endpoint)
             is_topic = named is not None and named.role == "topic"
             is_own = is_topic and trace.topic_of(endpoint) not in EVERY_NODES_TOPICS

@@ -68,8 +68,12 @@ def _which(crossing: int, known: int) -> str:
 def _rate(facts: Facts) -> str:
     if facts.traced is None:
         return ""
-    messages, size_bytes = totals(facts)
-    return f", {messages:.1f} messages/s and {size_text(round(size_bytes))}/s"
+    return f", {rates_text(*totals(facts))}"
+
+
+def rates_text(messages_per_s: float, bytes_per_s: float) -> str:
+    """Format the rates of some traffic."""
+    return f"{messages_per_s:.1f} messages/s and {size_text(round(bytes_per_s))}/s"
 
 
 def totals(facts: Facts) -> tuple[float, float]:

@@ -7,7 +7,7 @@ profile predicts can be compared with them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 from rmw_manycore_py.errors import FileError, Problem
@@ -38,6 +38,7 @@ from rmw_manycore_py.profile.model import (
     Profile,
     Publisher,
     Subscription,
+    indices_of,
 )
 
 SHARES = (0.0, 0.5, 0.95, 0.99, 1.0)
@@ -81,10 +82,10 @@ class _Report:
         self._architecture = architecture
         self._statistics = statistics
         nodes = architecture.nodes
-        self._nodes = _indices(node.node_name for node in nodes)
+        self._nodes = indices_of(node.node_name for node in nodes)
         # A node may have several publishers of one topic.
         self._publishes = [(node, publish) for node in nodes for publish in node.publishes]
-        self._subscriptions = _indices(
+        self._subscriptions = indices_of(
             one.callback_name for node in nodes for one in node.subscribes
         )
         groups = [group for node in nodes for group in node.callback_groups]
@@ -178,11 +179,6 @@ class _Report:
                 for one in path.node_chain
             ),
         )
-
-
-def _indices(keys: Iterable[str]) -> dict[str, int]:
-    """Return the position of each key, in the order of the first ones."""
-    return {key: index for index, key in enumerate(dict.fromkeys(keys))}
 
 
 def _publisher(node: int, topic: str) -> Publisher:

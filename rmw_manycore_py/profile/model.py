@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Iterable
+from typing import Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, NonNegativeFloat, NonNegativeInt
 
@@ -14,6 +15,7 @@ Index = NonNegativeInt
 Count = NonNegativeInt
 Source = Literal["ros2_tracing", "caret_report", "manycore_trace"]
 CallbackKind = Literal["subscription", "timer", "service", "client", "unknown"]
+_Key = TypeVar("_Key", int, str)
 
 
 class _Row(BaseModel):
@@ -163,3 +165,8 @@ class Profile(_Row):
     callbacks: tuple[Callback, ...]
     chains: tuple[Chain, ...]
     coverage: Coverage
+
+
+def indices_of(keys: Iterable[_Key]) -> dict[_Key, int]:
+    """Return the index of each key, in the order of the first ones."""
+    return {key: index for index, key in enumerate(dict.fromkeys(keys))}

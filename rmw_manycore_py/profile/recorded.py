@@ -5,9 +5,8 @@ from __future__ import annotations
 
 from array import array
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TypeVar
 
 from rmw_manycore_py.profile.distributions import SHARES, distribution_of, intervals_of
 from rmw_manycore_py.profile.model import (
@@ -22,6 +21,7 @@ from rmw_manycore_py.profile.model import (
     Profile,
     Publisher,
     Subscription,
+    indices_of,
 )
 from rmw_manycore_py.profile.turns import Outside, Publication, Turn, turns_of
 from rmw_manycore_py.trace.events import Endpoint, EndpointId, Kind, ThreadId, Trace
@@ -29,7 +29,6 @@ from rmw_manycore_py.trace.events import Endpoint, EndpointId, Kind, ThreadId, T
 _KINDS: dict[str, CallbackKind] = {"topic": "subscription", "request": "service", "reply": "client"}
 _LOG_TOPIC = "/rosout"
 _Key = tuple[object, ...]
-_Named = TypeVar("_Named", int, str)
 
 
 @dataclass
@@ -55,10 +54,10 @@ class _Recorded:
         self._trace = trace
         self._span_ns = end_ns - begin_ns
         endpoints = trace.endpoints
-        self._nodes = _positions(one.node for one in endpoints.values() if one.node)
+        self._nodes = indices_of(one.node for one in endpoints.values() if one.node)
         topics = {key: one for key, one in endpoints.items() if one.role == "topic"}
-        self._publishers = _positions(key for key, one in topics.items() if one.is_publisher)
-        self._subscriptions = _positions(key for key, one in topics.items() if not one.is_publisher)
+        self._publishers = indices_of(key for key, one in topics.items() if one.is_publisher)
+        self._subscriptions = indices_of(key for key, one in topics.items() if not one.is_publisher)
         self._tids: dict[tuple[int, int], list[int]] = defaultdict(list)  # by cluster and pid
         self._callbacks: dict[_Key, _Seen] = {}
         self._published: dict[EndpointId, list[Publication]] = defaultdict(list)
@@ -101,11 +100,11 @@ class _Recorded:
             self._process_of_node[seen.node] = process
 
     def _seen(self, turn: Turn, process: int) -> _Seen:
-        """Return the callback; timers are told apart by what they publish, logs aside."""
+        """Return the callback; the topics that a timer publishes, logs aside, identify it."""
         endpoint = self._trace.endpoints.get(-1 if turn.trigger is None else turn.trigger)
         outputs = {one.endpoint for one in turn.publications}
-        told_by = frozenset(one for one in outputs if self._trace.topic_of(one) != _LOG_TOPIC)
-        key: _Key = (process, turn.trigger, None if endpoint else told_by)
+        identity = frozenset(one for one in outputs if self._trace.topic_of(one) != _LOG_TOPIC)
+        key: _Key = (process, turn.trigger, None if endpoint else identity)
         if key not in self._callbacks:
             if endpoint is not None:
                 kind, node, trigger = _KINDS[endpoint.role], endpoint.node, endpoint.topic
@@ -212,8 +211,3 @@ class _Recorded:
 
 def _takes_or_publishes(kinds: list[int]) -> bool:
     return not {Kind.RELEASE, Kind.WRITE}.isdisjoint(kinds)
-
-
-def _positions(keys: Iterable[_Named]) -> dict[_Named, int]:
-    """Return the position of each key, in the order of the first ones."""
-    return {key: position for position, key in enumerate(dict.fromkeys(keys))}

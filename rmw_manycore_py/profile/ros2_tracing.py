@@ -49,7 +49,7 @@ def import_trace(path: Path, window: Window) -> Profile:
     executions = Executions(entities)
     span = _read(reader, entities, executions, window)
     if not span.events:
-        raise _problem(path, "events of ros2_tracing (ros2:...)")
+        raise FileError(Problem(path, 0, "", "events of ros2_tracing (ros2:...)", "none"))
     return _profile(reader, entities, executions, span)
 
 
@@ -165,7 +165,3 @@ class _Indexed(Protocol):
 
 def _index(one: _Indexed | None) -> int | None:
     return None if one is None else one.index
-
-
-def _problem(path: Path, expected: str) -> FileError:
-    return FileError(Problem(path, 0, "", expected, "none"))

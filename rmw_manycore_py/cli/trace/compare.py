@@ -9,17 +9,12 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.common.options import examples, json_option
-from rmw_manycore_py.cli.common.printing import (
-    echo,
-    new_table,
-    print_json,
-    print_table,
-    size_text,
-)
+from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.cli.common.rates import load_rates
 from rmw_manycore_py.cli.trace.latency import evaluated
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapping.compared import ClusterTraffic, row, verdict
+from rmw_manycore_py.mapping.words import rates_text
 from rmw_manycore_py.trace.comparison import Change, compare
 from rmw_manycore_py.trace.latency import TOTAL
 
@@ -64,8 +59,8 @@ def command(before: Path, after: Path, parts: bool, as_json: bool) -> None:
 
 
 def _words(traffic: ClusterTraffic) -> str:
-    rate = f"{traffic.messages_per_s:.1f} messages/s and {size_text(round(traffic.bytes_per_s))}/s"
-    return f"{rate} ({traffic.share:.0%} of all messages)"
+    rates = rates_text(traffic.messages_per_s, traffic.bytes_per_s)
+    return f"{rates} ({traffic.share:.0%} of all messages)"
 
 
 def _show_parts(changes: Sequence[Change]) -> None:
