@@ -8,6 +8,10 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pydantic import ValidationError
 
 EXIT_FAILURE = 1
 EXIT_BAD_INPUT = 2
@@ -106,3 +110,9 @@ def reported(error: Exception) -> ManycoreError | None:
 def what_is_wrong(error: Exception) -> str:
     """Return the message of an error, or its class name if the message is empty."""
     return str(error) or type(error).__name__
+
+
+def invalid_field(error: ValidationError) -> tuple[str, str]:
+    """Return the first invalid key, such as `nodes.0.name`, and what is wrong with it."""
+    first = error.errors()[0]
+    return ".".join(map(str, first["loc"])), first["msg"]

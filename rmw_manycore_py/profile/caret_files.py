@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, TypeVar
 import yaml
 from pydantic import BaseModel, BeforeValidator, Field, RootModel, ValidationError
 
-from rmw_manycore_py.errors import FileError, Problem
+from rmw_manycore_py.errors import FileError, Problem, invalid_field
 
 Content = TypeVar("Content", bound=BaseModel)
 UNDEFINED = "UNDEFINED"
@@ -134,9 +134,7 @@ def read(path: Path, kind: type[Content]) -> Content:
         with path.open(encoding="utf-8") as file:
             return kind.model_validate(yaml.load(file, _LOADER))
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(map(str, first["loc"]))
-        raise _problem(path, key, first["msg"]) from error
+        raise _problem(path, *invalid_field(error)) from error
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise _problem(path, "", str(error)) from error
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from rmw_manycore_py.errors import FileError, ManycoreError, Problem
+from rmw_manycore_py.errors import FileError, ManycoreError, Problem, invalid_field
 from rmw_manycore_py.profile.model import FORMAT, VERSION, Profile
 from rmw_manycore_py.whole_file import replacing
 
@@ -50,9 +50,8 @@ def load(path: Path) -> Profile:
             raise _problem(path, "version", str(VERSION), f"{head.version} of {head.format}")
         return Profile.model_validate_json(content)
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(map(str, first["loc"]))
-        raise _problem(path, key, "the profile of an application", first["msg"]) from error
+        key, found = invalid_field(error)
+        raise _problem(path, key, "the profile of an application", found) from error
 
 
 def _problem(path: Path, key: str, expected: str, found: str) -> FileError:

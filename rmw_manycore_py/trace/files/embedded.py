@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, NonNegativeInt, ValidationError
 
-from rmw_manycore_py.errors import FileError, Problem, what_is_wrong
+from rmw_manycore_py.errors import FileError, Problem, invalid_field, what_is_wrong
 from rmw_manycore_py.trace.events import EVENT, Endpoint, Process, Thread, Trace
 
 VERSION = 1
@@ -105,9 +105,8 @@ def parsed_header(text: str, path: Path) -> _Header:
     try:
         header = _Header.model_validate_json(text)
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(map(str, first["loc"])) or "header"
-        raise wrong(path, key, "what manycore trace save writes", first["msg"]) from error
+        key, found = invalid_field(error)
+        raise wrong(path, key or "header", "what manycore trace save writes", found) from error
     if header.version != VERSION:
         raise wrong(path, "version", str(VERSION), str(header.version))
     return header
