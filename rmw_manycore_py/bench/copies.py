@@ -18,10 +18,15 @@ FULL_MESSAGES = 100
 WARM_UP = 10
 FLAT_US = 40.0  # of a take, whatever the size
 
-WITHOUT = with_malloc_tuning(INSIDE, "without copies")
-WITH = replace(
-    WITHOUT, name="with copies", variables={**WITHOUT.variables, "MANYCORE_ZERO_COPY": "off"}
-)
+
+def _inside(zero_copy: str, name: str) -> Middleware:
+    middleware = with_malloc_tuning(INSIDE, name)
+    variables = {**middleware.variables, "MANYCORE_ZERO_COPY": zero_copy}
+    return replace(middleware, variables=variables)
+
+
+WITHOUT = _inside("sole", "without copies")
+WITH = _inside("off", "with copies")
 
 
 def measure(run: Run) -> list[Result]:
