@@ -89,11 +89,11 @@ class Placed:
 
 def check_rings(mapfile: Mapfile) -> Iterator[Problem]:
     """Yield the first topic whose ring fits no cluster."""
-    most = room_for_topic_dsms(mapfile.topology.smem_size)
+    max_bytes = room_for_topic_dsms(mapfile.topology.smem_size)
     for name, topic in mapfile.sections.topics.items():
-        if topic.topic_dsm_size is not None and topic.topic_dsm_size > most:
+        if topic.topic_dsm_size is not None and topic.topic_dsm_size > max_bytes:
             path = ("topics", name, "topic_dsm_size")
-            expected = f"at most {most}, what topic DSMs may have of a cluster's local memory"
+            expected = f"at most {max_bytes}, what topic DSMs may have of a cluster's local memory"
             yield mapfile.document.problem(path, expected, str(topic.topic_dsm_size))
             return
 
