@@ -13,11 +13,17 @@ from __future__ import annotations
 import os
 import sys
 
-from rmw_manycore_loading import ChangesAfterLoading
+from rmw_manycore_loading import (
+    METACLASS,
+    ChangesAfterLoading,
+    change_packages,
+    generated_modules,
+    refuse_rclpy,
+)
 
 TYPE_CHECKING = False  # type checkers treat it as typing.TYPE_CHECKING
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator
     from types import ModuleType
     from typing import Any
 
@@ -25,8 +31,6 @@ if TYPE_CHECKING:
 
 VARIABLE = "MANYCORE_ZERO_COPY"
 SOLE, OFF = "sole", "off"
-PACKAGES = ".msg"  # each imports its generated modules, as pkg.msg._image
-METACLASS = "Metaclass_"  # every generated class has one of its own
 NESTED = "/"  # in the name of a message type; sequences have brackets, too
 SEQUENCE = "sequence<"
 NUMBERS = (
@@ -44,31 +48,16 @@ def install() -> None:
     rmw_manycore.pth calls this unless `VARIABLE` is `OFF`.
     """
     chosen = os.environ.get(VARIABLE) or SOLE
-    if chosen != SOLE:
-        ChangesAfterLoading.install("arrays", lambda name: _refusal(name, chosen))
-    elif ChangesAfterLoading.install("arrays", _changes_of):
-        for name, module in list(sys.modules.items()):
-            if name.endswith(PACKAGES):
-                change(module)
-
-
-def _changes_of(name: str) -> Sequence[Callable[[ModuleType], None]]:
-    return (change,) if name.endswith(PACKAGES) else ()
-
-
-def _refusal(name: str, chosen: str) -> Sequence[Callable[[ModuleType], None]]:
-    """End a program of rclpy with one line; raised earlier, Python adds its own traceback."""
-
-    def refuse(_: ModuleType) -> None:
-        raise SystemExit(f"{VARIABLE}='{chosen}' is not valid: expected {SOLE} or {OFF}")
-
-    return (refuse,) if name == "rclpy" else ()
+    if chosen == SOLE:
+        change_packages("arrays", (".msg",), change)
+    else:
+        refusal = (refuse_rclpy(VARIABLE, chosen, SOLE, OFF),)
+        ChangesAfterLoading.install("arrays", lambda name: refusal if name == "rclpy" else ())
 
 
 def change(package: ModuleType) -> None:
     """Change the generated classes of a package."""
-    for name, module in list(vars(package).items()):
-        names = getattr(module, "__dict__", {}) if name.startswith("_") else {}
+    for names in generated_modules(package):
         for key, metaclass in list(names.items()):
             if key.startswith(METACLASS) and hasattr(metaclass, "__import_type_support__"):
                 message = names.get(key[len(METACLASS) :])

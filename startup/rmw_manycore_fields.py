@@ -13,17 +13,14 @@ from __future__ import annotations
 
 import sys
 
-from rmw_manycore_loading import ChangesAfterLoading
+from rmw_manycore_loading import change_packages, generated_modules
 
 TYPE_CHECKING = False  # type checkers treat it as typing.TYPE_CHECKING
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
     from types import ModuleType
     from typing import Any
 
 VARIABLE = "MANYCORE_FAST_FIELDS"
-PACKAGES = (".msg", ".srv", ".action")  # each imports its generated modules, as pkg.msg._image
-METACLASS = "Metaclass_"  # every generated class has one of its own
 # Numbers in the byte order of the host, by the codes of memoryview, array.array and numpy
 FORMATS = frozenset("bBhHiIlLqQfd")
 HALF = "e"  # in numpy only
@@ -37,22 +34,14 @@ def install() -> None:
 
     rmw_manycore.pth decides by `VARIABLE` whether to call this.
     """
-    if ChangesAfterLoading.install("fields", _changes_of):
-        for name, module in list(sys.modules.items()):
-            if name.endswith(PACKAGES):
-                change(module)
-
-
-def _changes_of(name: str) -> Sequence[Callable[[ModuleType], None]]:
-    return (change,) if name.endswith(PACKAGES) else ()
+    change_packages("fields", (".msg", ".srv", ".action"), change)
 
 
 def change(package: ModuleType) -> None:
     """Change the generated modules of a package."""
     original = sys.modules.get("array")
-    for name, module in list(vars(package).items()) if original else ():
-        names = getattr(module, "__dict__", {}) if name.startswith("_") else {}
-        if names.get("array") is original and any(key.startswith(METACLASS) for key in names):
+    for names in generated_modules(package) if original else ():
+        if names.get("array") is original:
             names["array"] = fast_array()
 
 

@@ -10,12 +10,14 @@ import sys
 
 TYPE_CHECKING = False  # type checkers treat it as typing.TYPE_CHECKING
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from importlib.machinery import ModuleSpec
     from types import ModuleType
     from typing import Any
 
     Changes = Sequence[Callable[[ModuleType], None]]
+
+METACLASS = "Metaclass_"  # every generated class has one of its own
 
 
 class ChangesAfterLoading:
@@ -62,3 +64,36 @@ def _change_when_loaded(loader: Any, changes: Changes) -> None:
             change(module)
 
     loader.exec_module = exec_module
+
+
+def change_packages(
+    purpose: str, kinds: tuple[str, ...], change: Callable[[ModuleType], None]
+) -> None:
+    """Call `change` with the packages of generated modules, such as pkg.msg for kind ".msg".
+
+    Those that this process has imported, and others when it does.
+    """
+    if ChangesAfterLoading.install(purpose, lambda name: (change,) if name.endswith(kinds) else ()):
+        for name, module in list(sys.modules.items()):
+            if name.endswith(kinds):
+                change(module)
+
+
+def generated_modules(package: ModuleType) -> Iterator[dict[str, Any]]:
+    """Yield the names in each generated module of a package: pkg.msg imports pkg.msg._image."""
+    for name, module in list(vars(package).items()):
+        names: dict[str, Any] = getattr(module, "__dict__", {}) if name.startswith("_") else {}
+        if any(key.startswith(METACLASS) for key in names):
+            yield names
+
+
+def refuse_rclpy(variable: str, value: str, *valid: str) -> Callable[[ModuleType], None]:
+    """Return a change of rclpy for an invalid value of an environment variable.
+
+    It ends the program with one line; raised before rclpy, Python adds its own traceback.
+    """
+
+    def refuse(_: ModuleType) -> None:
+        raise SystemExit(f"{variable}='{value}' is not valid: expected {' or '.join(valid)}")
+
+    return refuse

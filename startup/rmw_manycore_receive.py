@@ -10,6 +10,8 @@ Imports nothing that python has not imported by then: this runs before everythin
 
 from __future__ import annotations
 
+from rmw_manycore_loading import refuse_rclpy
+
 TYPE_CHECKING = False  # as typing has it, without importing typing
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,12 +29,7 @@ def changes(design: str) -> dict[str, Callable[[ModuleType], None]]:
         return {"rclpy.node": _share_group}
     if design == PER_TOPIC:
         return {"rclpy.node": _give_groups, "rclpy.executors": _give_threads}
-    return {"rclpy": lambda _: _refuse(design)}
-
-
-def _refuse(design: str) -> None:
-    """End a program of rclpy with one line; raised earlier, Python adds its own traceback."""
-    raise SystemExit(f"{VARIABLE}='{design}' is not valid: expected {QUEUE} or {PER_TOPIC}")
+    return {"rclpy": refuse_rclpy(VARIABLE, design, QUEUE, PER_TOPIC)}
 
 
 def _share_group(node: ModuleType) -> None:
