@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import _imp
 import array
 import copy
 import json
@@ -11,6 +12,7 @@ import pickle
 import random
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +26,7 @@ from std_msgs.msg import UInt8MultiArray
 
 import rmw_manycore_arrays as arrays
 from rmw_manycore_py.native._transport import Platform
-from support import IS_MANYCORE, TIMEOUT_S
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
 from support.nodes.exchanging import Exchange, in_record, large, status_of_child
 from support.nodes.ros import announce, lost_messages, peer_node, spin_until
 from support.processes.platforms import environment, unique_platform
@@ -64,7 +66,7 @@ def test_every_type_as_with_copies():
     assert len(found) > 30
 
 
-def test_another_value_is_refused():
+def test_invalid_setting_is_rejected():
     done = run("-c", "import rclpy", **{arrays.VARIABLE: "always"})
     assert done.stderr == "MANYCORE_ZERO_COPY='always' is not valid: expected sole or off\n"
     assert done.returncode == 1
@@ -95,7 +97,7 @@ def test_the_message_around_an_array_is_whole(node):
 
 
 class Derived(UInt8MultiArray):
-    """Says something else than its slot holds."""
+    """Its property returns other values than its slot holds."""
 
     @property
     def data(self) -> Any:
@@ -194,7 +196,7 @@ def test_random_holds(node):
 
 
 def test_arrays_outlive_everything(start_peer):
-    peer = start_peer(publish_until_told)
+    peer = start_peer(publish_until_stopped)
     rclpy.init()
     node = rclpy.create_node("tester")
     received: list[Any] = []
@@ -212,7 +214,7 @@ def test_arrays_outlive_everything(start_peer):
     assert held[2].data == large()
 
 
-def publish_until_told() -> None:
+def publish_until_stopped() -> None:
     with peer_node() as node:
         publisher = node.create_publisher(UInt8MultiArray, "large", DEPTH)
         node.create_timer(0.01, lambda: publisher.publish(UInt8MultiArray(data=large())))
@@ -254,12 +256,12 @@ def test_a_child_keeps_what_it_inherits(node):
     exchange = Exchange(node, depth=DEPTH)
     held = [exchange(large(seed=number)) for number in range(DEPTH)]
     view = np.frombuffer(held[0], np.uint8)
-    told, tell = os.pipe()
+    read_end, write_end = os.pipe()
     child = os.fork()
     if child == 0:
         status = 1
         try:
-            os.read(told, 1)
+            os.read(read_end, 1)
             assert [large(seed=number) for number in range(DEPTH)] == held
             assert bytes(view) == large(seed=0).tobytes()
             view[0] ^= 1
@@ -274,7 +276,7 @@ def test_a_child_keeps_what_it_inherits(node):
     held.clear()
     for number in range(2 * DEPTH):  # into the records that were given back
         exchange(large(seed=MANY + number))
-    os.write(tell, b"x")
+    os.write(write_end, b"x")
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
     assert before == large(seed=0)[0]
 
@@ -291,6 +293,38 @@ def test_a_child_of_a_child(node):
 
     assert status_of_child(look) == 0
     assert held == large()
+
+
+@pytest.mark.filterwarnings("ignore:.*multi-threaded, use of fork:DeprecationWarning")
+def test_threads_that_fork_at_the_same_time(node):
+    """Each waits for its own child, and no end of a pipe stays open in any process."""
+    held = Exchange(node)(large())
+    before = open_files()
+    statuses: list[int] = []
+
+    def fork() -> None:
+        statuses.append(status_of_child(look))
+
+    def look() -> None:
+        assert held == large()
+        assert open_files() == before
+
+    threads = [threading.Thread(target=fork) for _ in range(2)]
+    _imp.acquire_lock()  # os.fork() takes it after the functions that are called before a fork
+    try:
+        for thread in threads:
+            thread.start()
+        wait_until(lambda: open_files() == before + 2 * len(threads), "both threads have a pipe")
+    finally:
+        _imp.release_lock()
+    for thread in threads:
+        thread.join()
+    assert statuses == [0, 0]
+    assert open_files() == before
+
+
+def open_files() -> int:
+    return len(os.listdir("/proc/self/fd"))
 
 
 def test_messages_that_are_held_are_counted(node):

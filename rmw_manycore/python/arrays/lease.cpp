@@ -5,7 +5,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <map>
+#include <thread>
 
 #include "platform/private_pages.hpp"
 
@@ -13,8 +16,8 @@ namespace rmw_manycore {
 namespace {
 
 Lease * first = nullptr;
-/// Closed by the child when it has its copies; -1: there is nothing to wait for.
-int copied[2] = {-1, -1};
+/// Of the threads that fork at this moment: the child closes it when it has its copies.
+std::map<std::thread::id, std::array<int, 2>> pipes;
 
 }  // namespace
 
@@ -50,21 +53,22 @@ void Lease::give_back() noexcept {
 }
 
 void Lease::before_fork() noexcept {
-  if (first != nullptr && pipe2(copied, O_CLOEXEC) != 0) {
+  if (first != nullptr && pipe2(pipes[std::this_thread::get_id()].data(), O_CLOEXEC) != 0) {
     Py_FatalError("rmw_manycore: no pipe for a child that inherits received messages");
   }
 }
 
 void Lease::after_fork_in_parent() noexcept {
-  if (copied[0] == -1) {
+  const auto own = pipes.extract(std::this_thread::get_id());
+  if (own.empty()) {
     return;
   }
-  close(copied[1]);
+  const auto [read_end, write_end] = own.mapped();
+  close(write_end);
   char byte = 0;
-  while (read(copied[0], &byte, 1) == -1 && errno == EINTR) {
+  while (read(read_end, &byte, 1) == -1 && errno == EINTR) {
   }
-  close(copied[0]);
-  copied[0] = copied[1] = -1;
+  close(read_end);
 }
 
 void Lease::after_fork_in_child() noexcept {
@@ -75,11 +79,11 @@ void Lease::after_fork_in_child() noexcept {
     }
     lease->hold_ = nullptr;  // the parent's
   }
-  if (copied[0] != -1) {
-    close(copied[0]);
-    close(copied[1]);
-    copied[0] = copied[1] = -1;
+  for (const auto & [thread, ends] : pipes) {  // also those of threads that the child lacks
+    close(ends[0]);
+    close(ends[1]);
   }
+  pipes.clear();
 }
 
 }  // namespace rmw_manycore
