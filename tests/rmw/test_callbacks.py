@@ -227,7 +227,7 @@ def test_the_callback_of_an_event_is_called_before_a_wait_ends(node):
 
     def call_slowly(_: object, count: int) -> None:
         began.set()
-        time.sleep(0.005)  # of a wait that ends during the call, the check would come first
+        time.sleep(0.005)  # lets a wait that does not await the call end before it is counted
         calls.append(count)
 
     callback = EventCallback(call_slowly)

@@ -26,7 +26,7 @@ public:
 
   manycore::Waiters & waiters() const noexcept { return thread_.waiters(); }
   /// There are changes to take, for all of which the callback has been called: as with other
-  /// middlewares, a wait tells of an event after its callback.
+  /// middlewares, a wait reports an event after its callback.
   bool ready(rmw_event_type_t type) const;
   /// When the passage of time alone may make the event ready (CLOCK_MONOTONIC).
   int64_t next_due_ns(rmw_event_type_t type) const { return counts(type).next_due_ns; }
