@@ -25,18 +25,18 @@ ROOTS = (REPOSITORY, REPOSITORY / "bridge", REPOSITORY / "startup")
 # Rooms of the root, lowest first; those of one layer do not see each other. A leading dot: in
 # rmw_manycore_py.
 LAYERS = [
-    ("rmw_manycore_hook", "rmw_manycore_interfaces", "rmw_manycore_receive"),
+    ("rmw_manycore_hook", "rmw_manycore_interfaces"),
     ("rmw_manycore_loading",),
     (
         "rmw_manycore_arrays",
-        "rmw_manycore_executor",
         "rmw_manycore_fields",
         "rmw_manycore_program",
+        "rmw_manycore_receive",
         ".errors",
         ".examples",
         ".whole_file",
     ),
-    (".native",),
+    (".native", "rmw_manycore_executor"),
     (".process", ".ros", ".trace"),
     (".interfaces", ".platform", ".profile", ".routes"),
     (".mapfile", ".picture", ".transport"),
