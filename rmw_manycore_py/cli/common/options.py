@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import click
 from click.shell_completion import CompletionItem
 
+from rmw_manycore_py.cli.common.finite_range import FiniteRange
 from rmw_manycore_py.ros.domain import checked_platform, default_platform
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -136,7 +137,7 @@ def number_option(
     *names: str, within: tuple[float, float | None], default: float, **more: Any
 ) -> Callable[[Command], Command]:
     """Return an option for a number within bounds; its help shows the default."""
-    number_range: Any = click.IntRange if isinstance(default, int) else click.FloatRange
+    number_range: Any = click.IntRange if isinstance(default, int) else FiniteRange
     return click.option(
         *names, type=number_range(*within), default=default, show_default=True, **more
     )
@@ -165,7 +166,7 @@ def _without_discovery(command: Command) -> Command:
         ),
         click.option(
             "--spin-time",
-            type=float,
+            type=FiniteRange(),
             metavar="S",
             expose_value=False,
             help="Accepted for compatibility with ros2: there is no discovery.",

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from rmw_manycore_py.cli.common.finite_range import FiniteRange
 from rmw_manycore_py.cli.common.options import examples, number_option
 from rmw_manycore_py.cli.common.output_file import writing
 from rmw_manycore_py.cli.common.printing import echo
@@ -50,7 +51,7 @@ from rmw_manycore_py.ndt.recordings.opening import open_recording
 @click.option(
     "--tile-size",
     "tile_m",
-    type=click.FloatRange(1.0),
+    type=FiniteRange(1.0),
     help="Tile size in metres: write square tiles and pointcloud_map_metadata.yaml.",
 )
 @click.option(

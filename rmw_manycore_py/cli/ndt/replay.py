@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from rmw_manycore_py.cli.common.finite_range import FiniteRange
 from rmw_manycore_py.cli.common.options import examples, number_option
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.cli.ndt.recording_options import recording_options
@@ -47,7 +48,7 @@ MAP_VOXEL_M = 0.2
 @click.option(
     "--rate",
     "rate_hz",
-    type=click.FloatRange(0.1, 1000.0),
+    type=FiniteRange(0.1, 1000.0),
     help="Scans per second; default: by stamps.",
 )
 @click.option("--wait", "waits", is_flag=True, help="Wait for each answer before the next scan.")
@@ -70,10 +71,12 @@ MAP_VOXEL_M = 0.2
 @number_option(
     "--drift", within=(0.0, 1.0), default=0.05, help="Odometry error, as a fraction of each motion."
 )
-@click.option(
-    "--offset", "offset_m", default=0.5, show_default=True, help="Perturbation in metres."
+@number_option(
+    "--offset", "offset_m", within=(0.0, None), default=0.5, help="Perturbation in metres."
 )
-@click.option("--turn", "turn_deg", default=3.0, show_default=True, help="Perturbation in degrees.")
+@number_option(
+    "--turn", "turn_deg", within=(-180.0, 180.0), default=3.0, help="Perturbation in degrees."
+)
 @click.option("--seed", default=1, show_default=True, help="Seed of drift and perturbation.")
 @number_option(
     "--voxel",
@@ -83,11 +86,11 @@ MAP_VOXEL_M = 0.2
     help="Voxel size in metres to downsample scans to; 0 sends all points.",
 )
 @click.option("--scans", type=click.IntRange(1), help="Play only the first N scans.")
-@click.option(
+@number_option(
     "--deadline",
     "deadline_ms",
+    within=(0.0, None),
     default=100.0,
-    show_default=True,
     help="Deadline in ms; later answers count as late.",
 )
 @number_option(

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import click
 
+from rmw_manycore_py.cli.common.finite_range import FiniteRange
 from rmw_manycore_py.cli.common.node_names import existing_node
 from rmw_manycore_py.cli.common.options import Command, named_node_options, platform_option
 
@@ -14,7 +15,7 @@ _timeout_option = click.option(
     "--timeout",
     "timeout_s",
     metavar="S",
-    type=float,
+    type=FiniteRange(),
     default=DEFAULT_TIMEOUT_S,
     show_default=True,
     help="Wait up to S seconds for the node; forever if negative.",

@@ -19,6 +19,7 @@ from rmw_manycore_py.cli.common.message_text import (
 )
 from rmw_manycore_py.cli.common.options import discovery_options, examples, platform_option
 from rmw_manycore_py.cli.common.printing import echo
+from rmw_manycore_py.cli.common.seconds import Seconds
 from rmw_manycore_py.cli.common.shown_options import shown_options
 from rmw_manycore_py.cli.topic.listening import Listener
 from rmw_manycore_py.cli.topic.message_part import message_filter, part_of
@@ -47,7 +48,7 @@ _RAW_HEAD = "---Got new message, message info:---\n{}\n---Message data:---\n"
 @click.option(
     "--timeout",
     "timeout_s",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Seconds(),
     metavar="S",
     help="Exit after S seconds.",
 )

@@ -13,6 +13,7 @@ import click
 from builtin_interfaces.msg import Time
 
 from rmw_manycore_py.cli.common.completion import complete_topics, complete_types_of_topic
+from rmw_manycore_py.cli.common.finite_range import FiniteRange
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_values import message_of, parse_values, read_values
 from rmw_manycore_py.cli.common.options import (
@@ -22,6 +23,7 @@ from rmw_manycore_py.cli.common.options import (
     talking_options,
 )
 from rmw_manycore_py.cli.common.printing import echo
+from rmw_manycore_py.cli.common.seconds import Seconds
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.common.values_argument import DEFAULTS, exclude, values_argument
 from rmw_manycore_py.cli.topic.qos_options import QosOptions, qos_options
@@ -56,7 +58,7 @@ KEEP_ALIVE_S = 0.1
     "--rate",
     "rate_hz",
     metavar="N",
-    type=click.FloatRange(min=0, min_open=True),
+    type=FiniteRange(min=0, min_open=True),
     default=1.0,
     show_default=True,
     help="Messages per second.",
@@ -85,7 +87,7 @@ KEEP_ALIVE_S = 0.1
     "--max-wait-time-secs",
     "timeout_s",
     metavar="S",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Seconds(),
     help="Give up waiting after S seconds.",
 )
 @number_option(

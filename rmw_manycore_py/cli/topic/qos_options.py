@@ -11,6 +11,8 @@ from typing import Any
 
 import click
 
+from rmw_manycore_py.cli.common.seconds import Seconds
+
 _Command = Callable[..., None]
 
 # Names of rclpy, which --help does not import.
@@ -95,7 +97,7 @@ def _qos_options(preset: str, unasked: str) -> Callable[[_Command], _Command]:
             "--qos-liveliness-lease-duration-seconds",
             "lease_s",
             metavar="S",
-            type=click.FloatRange(min=0, min_open=True),
+            type=Seconds(),
             help="QoS: time within which a publisher shows that it is alive.",
         )
         @functools.wraps(function)

@@ -10,6 +10,7 @@ import click
 
 from rmw_manycore_py.cli.common.completion import complete_message_types, complete_topics
 from rmw_manycore_py.cli.common.options import examples, number_option, platform_option
+from rmw_manycore_py.cli.common.seconds import Seconds
 from rmw_manycore_py.cli.topic.outside import leave_middleware
 from rmw_manycore_py.cli.topic.selection_options import (
     exclude_option,
@@ -63,7 +64,7 @@ _DEPTH = 1000
 @click.option(
     "--duration",
     "duration_s",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Seconds(),
     metavar="S",
     help="Stop after S seconds.",
 )

@@ -15,6 +15,7 @@ import click
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import OutputFile, writing
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
+from rmw_manycore_py.cli.common.seconds import Seconds
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.processes.environment import OUTSIDE_IMPLEMENTATION, leave_middleware
 from rmw_manycore_py.papers.roslite2.course.directory import MAPFILE, read_course
@@ -43,14 +44,14 @@ from rmw_manycore_py.picture.plotting import load_figure
 @click.option(
     "--duration",
     "duration_s",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Seconds(),
     metavar="S",
     help="Stop after this many seconds; default: at the end of the course.",
 )
 @click.option(
     "--timeout",
     "timeout_s",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Seconds(),
     metavar="S",
     default=120.0,
     show_default=True,

@@ -1,0 +1,32 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A length of time on the command line."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import click
+
+from rmw_manycore_py.cli.common.finite_range import FiniteRange
+
+_PART = re.compile(r"(\d+(?:\.\d*)?|\.\d+)(ms|s|m|h)")
+_UNIT_S = {"ms": 0.001, "s": 1.0, "m": 60.0, "h": 3600.0}
+
+
+class Seconds(FiniteRange):
+    """A positive number of seconds, or numbers with units, as in 90s, 5m, 1h30m."""
+
+    name = "seconds"
+
+    def __init__(self) -> None:
+        super().__init__(min=0, min_open=True)
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, context: click.Context | None
+    ) -> float:
+        """Return the seconds, or fail with a usage error."""
+        parts = _PART.findall(value) if isinstance(value, str) else []
+        if parts and "".join(map("".join, parts)) == value:
+            value = sum(float(number) * _UNIT_S[unit] for number, unit in parts)
+        return super().convert(value, param, context)

@@ -1,0 +1,28 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Lengths of time on the command line."""
+
+from __future__ import annotations
+
+import click
+import pytest
+
+from rmw_manycore_py.cli.common.seconds import Seconds
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [
+        *(("90", 90.0), ("0.5", 0.5), ("90s", 90.0), ("5m", 300.0), ("1h30m", 5400.0)),
+        *(("250ms", 0.25), ("1m0.5s", 60.5), ("1e3", 1000.0)),
+    ],
+)
+def test_units_are_added_up(text: str, seconds: float) -> None:
+    assert Seconds().convert(text, None, None) == pytest.approx(seconds)
+
+
+@pytest.mark.parametrize("text", ["", "0", "0s", "-1", "5x", "m", "5m3", "nan", "inf", "1e13"])
+def test_anything_else_is_a_usage_error(text: str) -> None:
+    with pytest.raises(click.BadParameter):
+        Seconds().convert(text, None, None)
