@@ -11,10 +11,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 #include "platform/error.hpp"
 
@@ -22,6 +24,10 @@ extern char ** environ;
 
 namespace manycore {
 namespace {
+
+// An installer writes the program (ETXTBSY), or a fork of it has not yet closed the file.
+constexpr int busy_tries = 100;
+constexpr auto busy_pause = std::chrono::milliseconds(10);
 
 std::string base_name(const std::string & path) { return path.substr(path.rfind('/') + 1); }
 
@@ -97,12 +103,18 @@ int spawn_daemon(const std::vector<std::string> & arguments) {
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
 
   pid_t pid = -1;
-  const int error = posix_spawn(&pid, argv[0], &actions, &attributes, argv.data(), environ);
+  int error = ETXTBSY;
+  for (int tries = 0; error == ETXTBSY && tries < busy_tries; ++tries) {
+    if (tries > 0) {
+      std::this_thread::sleep_for(busy_pause);
+    }
+    error = posix_spawn(&pid, argv[0], &actions, &attributes, argv.data(), environ);
+  }
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
   if (error != 0) {
     errno = error;
-    return -1;
+    throw_errno("cannot start " + arguments[0]);
   }
   int status = 0;
   while (waitpid(pid, &status, 0) < 0) {

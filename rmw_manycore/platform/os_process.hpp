@@ -21,8 +21,8 @@ bool pin_to_cpu(int host_cpu) noexcept;
 std::string program_name();
 
 /// Starts `arguments` as a daemon (own process group, no inherited descriptors) and waits until its
-/// parent half exits, which reports readiness. Returns the exit status, or -1 if it was not
-/// started.
+/// parent half exits, which reports readiness. Returns the exit status. Throws if the program
+/// cannot be started; one that is being installed is waited for, for a second.
 int spawn_daemon(const std::vector<std::string> & arguments);
 
 /// Called by a daemon at its start: forks, and keeps the parent half until the child calls ready()

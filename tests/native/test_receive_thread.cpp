@@ -12,11 +12,17 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <thread>
 #include <vector>
 
 #include "messages.hpp"
 #include "node_role.hpp"
+#include "platform/error.hpp"
+#include "platform/file_descriptor.hpp"
+#include "platform/os_process.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
@@ -194,6 +200,22 @@ TEST_CASE("killed: its successor makes each of many subscriptions look for itsel
       return inspection.header_of(*each).resync.load() == 1;
     });
   });
+}
+
+TEST_CASE("a program that is being written is waited for") {
+  const std::string program = "/tmp/manycore_busy_" + std::to_string(getpid());
+  std::filesystem::copy("/bin/true", program);
+  FileDescriptor writer(open(program.c_str(), O_WRONLY | O_CLOEXEC));
+  REQUIRE(writer.get() >= 0);
+  CHECK_THROWS_WITH_AS(spawn_daemon({program}), doctest::Contains("Text file busy"), Error);
+  std::thread installer([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    writer = FileDescriptor();
+  });
+  CHECK(spawn_daemon({program}) == 0);
+  installer.join();
+  std::filesystem::remove(program);
+  CHECK_THROWS_WITH_AS(spawn_daemon({program}), doctest::Contains("No such file"), Error);
 }
 
 TEST_CASE("a receive thread keeps none of its first node's attributes") {

@@ -84,9 +84,10 @@ void ReceiveThreadWatcher::run() {
   while (running) {
     try {
       running = watch_once();
+      reported = false;
     } catch (const std::exception & error) {
       if (!reported) {
-        std::fprintf(stderr, "[rmw_manycore] %s\n", error.what());
+        std::fprintf(stderr, "[rmw_manycore] %s; trying again\n", error.what());
       }
       reported = true;
       sleep_cancellable(restart_ms);
