@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import os
 import re
 from collections.abc import Mapping
@@ -23,14 +24,7 @@ def ros_domain() -> int:
 
     :raises ManycoreError: if it is not a valid domain.
     """
-    text = os.environ.get("ROS_DOMAIN_ID") or "0"
-    domain, rest = _number(text)
-    if rest or domain > MAX_DOMAIN:
-        raise ManycoreError(
-            f"ROS_DOMAIN_ID: expected a number from 0 to {MAX_DOMAIN}, found '{text}'",
-            EXIT_BAD_INPUT,
-        )
-    return domain
+    return _own_domain(MAX_DOMAIN)
 
 
 def default_platform(domain: int | None = None) -> str:
@@ -40,9 +34,10 @@ def default_platform(domain: int | None = None) -> str:
 
     :param domain: ROS domain of a context; default: ROS_DOMAIN_ID, the one that MANYCORE_PLATFORM
         stands for.
-    :raises ManycoreError: if MANYCORE_PLATFORM is not a valid platform name.
+    :raises ManycoreError: if MANYCORE_PLATFORM is not a valid platform name, or ROS_DOMAIN_ID not a
+        number, with which rcl starts no node either.
     """
-    own = _domain_of(os.environ)
+    own = _own_domain()
     named = os.environ.get("MANYCORE_PLATFORM")
     if named and domain in (None, own):
         return checked_platform(named, "MANYCORE_PLATFORM")
@@ -55,6 +50,17 @@ def is_elsewhere(node: Mapping[str, str], base: Mapping[str, str] = os.environ) 
     :param node: variables that the node has beyond `base`, or all of them.
     """
     return _domain_of({**base, **node}) != _domain_of(base)
+
+
+def _own_domain(last: float = math.inf) -> int:
+    text = os.environ.get("ROS_DOMAIN_ID") or "0"
+    domain, rest = _number(text)
+    if rest or domain > last:
+        raise ManycoreError(
+            f"ROS_DOMAIN_ID: expected a number from 0 to {MAX_DOMAIN}, found '{text}'",
+            EXIT_BAD_INPUT,
+        )
+    return domain
 
 
 def _domain_of(environment: Mapping[str, str]) -> int:

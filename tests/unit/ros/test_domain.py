@@ -68,6 +68,15 @@ def test_what_is_no_domain_is_refused(monkeypatch: pytest.MonkeyPatch, text: str
         ros_domain()
 
 
+@pytest.mark.parametrize("text", ["abc", "5x", "-", " "])
+def test_a_platform_has_no_other_domain_than_its_nodes(
+    monkeypatch: pytest.MonkeyPatch, text: str
+) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", text)
+    with pytest.raises(ManycoreError, match=f"ROS_DOMAIN_ID: expected .*, found '{text}'"):
+        default_platform()
+
+
 NO_NAMES = (
     "",
     ".",
