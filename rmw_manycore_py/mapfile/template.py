@@ -13,13 +13,15 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, MapfileError, 
 from rmw_manycore_py.mapfile.launch_file import LaunchedNode, LaunchFile, read_launch_file
 from rmw_manycore_py.mapfile.placing.launched import program_of
 from rmw_manycore_py.mapfile.placing.parameters import Launched
+from rmw_manycore_py.mapfile.programs.entry_script import scripts_of_module
 from rmw_manycore_py.mapfile.programs.executables import find_module
-from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
+from rmw_manycore_py.mapfile.programs.source import SourceNode, read_source
 from rmw_manycore_py.platform.topology import Topology, profile
 from rmw_manycore_py.ros.names import full_node_name
 
 _ADVICE = "# Choose the clusters. A node gets the first free core unless 'core' is set."
 _PLAN = "plan: true  # nodes need not be installed for map check and map show; run needs them"
+_STARTS_NOTHING = "starts nothing: install its package, or call main() at its end"
 _LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch", ".xml", ".yaml", ".yml")
 
 
@@ -116,10 +118,12 @@ def _is_hidden(file: Path, top: Path) -> bool:
 
 def _entries_of(file: Path, directory: Path) -> list[_Entry]:
     """Return the process started by a file; several nodes in a file share a process."""
-    nodes = scan(file)
+    source = read_source(file)
+    nodes = source.nodes
     if not nodes:
         return []
-    entry = _Entry(nodes[0].name or file.stem, _start(file, directory))
+    start = _start if source.is_program else _start_by_entry_point
+    entry = _Entry(nodes[0].name or file.stem, start(file, directory))
     for node in nodes:
         entry.publish |= node.publish
         entry.subscribe |= node.subscribe
@@ -198,12 +202,23 @@ def _components(node: Launched) -> list[str]:
     return []
 
 
-def _start(file: Path, directory: Path) -> str:
+def _start_by_entry_point(file: Path, directory: Path) -> str:
+    for package, executable in scripts_of_module(".".join(_module_parts(file))):
+        return f"package: {package}\n    executable: {executable}"
+    return f"{_start(file, directory)}  # {_STARTS_NOTHING}"
+
+
+def _module_parts(file: Path) -> list[str]:
     parts = [file.stem] if file.stem != "__main__" else []
     parent = file.resolve().parent
     while (parent / "__init__.py").is_file():
         parts.insert(0, parent.name)
         parent = parent.parent
+    return parts
+
+
+def _start(file: Path, directory: Path) -> str:
+    parts = _module_parts(file)
     program = find_module(".".join(parts), directory) if len(parts) > 1 else None
     if program is not None and program.source is not None and program.source.samefile(file):
         return f"module: {'.'.join(parts)}"

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import ast
+import os
 import re
-from importlib.metadata import EntryPoint, PackageNotFoundError, distribution
+import sys
+from importlib.metadata import EntryPoint, PackageNotFoundError, distribution, entry_points
 from pathlib import Path
 
 # setuptools and colcon: load_entry_point('package==1.0', 'console_scripts', 'talker')
@@ -20,6 +22,23 @@ def console_scripts(package: str) -> list[EntryPoint]:
     except PackageNotFoundError:
         return []
     return [entry for entry in found.entry_points if entry.group == "console_scripts"]
+
+
+def installed_script(package: str, name: str) -> Path | None:
+    """Return the file that pip wrote beside this interpreter for a console script."""
+    script = Path(sys.executable).with_name(name)
+    files = distribution(package).files or ()
+    is_own = any(file.name == name and Path(file.locate()).resolve() == script for file in files)
+    return script if is_own and os.access(script, os.X_OK) else None
+
+
+def scripts_of_module(module: str) -> list[tuple[str, str]]:
+    """Return the installed console scripts that start a module, as package and executable."""
+    return sorted(
+        (entry.dist.name, entry.name)
+        for entry in entry_points(group="console_scripts")
+        if entry.module == module and entry.dist is not None
+    )
 
 
 def module_of_script(script: Path) -> str | None:

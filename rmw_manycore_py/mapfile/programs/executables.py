@@ -14,7 +14,11 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 
 from rmw_manycore_program import own_program
-from rmw_manycore_py.mapfile.programs.entry_script import console_scripts, module_of_script
+from rmw_manycore_py.mapfile.programs.entry_script import (
+    console_scripts,
+    installed_script,
+    module_of_script,
+)
 from rmw_manycore_py.ros import ament
 
 
@@ -169,11 +173,13 @@ def _entry_point(package: str, executable: str) -> Program | None:
     entry = next((e for e in console_scripts(package) if e.name == executable), None)
     if entry is None:
         return None
+    source = _python_source(_module_spec(entry.module, None))
+    if (script := installed_script(package, executable)) is not None:
+        return Program((str(script),), source)
     attribute = entry.attr.split(".")[0]
-    # Like the script written by pip, without the working directory in sys.path.
+    # Like the script that pip would write, without the working directory in sys.path.
     code = (
         "import sys; sys.path[:] = filter(None, sys.path); "
         f"from {entry.module} import {attribute}; sys.exit({entry.attr}())"
     )
-    source = _python_source(_module_spec(entry.module, None))
     return Program((sys.executable, "-c", code), source)

@@ -12,7 +12,11 @@ from pathlib import Path
 from rmw_manycore_py.errors import MapfileError, Problem, what_is_wrong
 from rmw_manycore_py.mapfile.format.document import read_text
 
-_CALLS = {"create_publisher": "publish", "create_subscription": "subscribe"}
+_CALLS = {
+    "create_publisher": "publish",
+    "create_lifecycle_publisher": "publish",
+    "create_subscription": "subscribe",
+}
 _QOS_ARGUMENT = {"publish": 2, "subscribe": 3}
 # Excludes the parts of services and actions (SetBool_Request), which are not listed as types.
 _INTERFACE = re.compile(r"\w+\.(msg|srv|action)\.[A-Z][A-Za-z0-9]*")
@@ -39,11 +43,13 @@ class SourceNode:
 class SourceFile:
     """A parsed Python file: its nodes in line order, and the interface types that it imports.
 
-    `interfaces` are the unconditional imports, each with its line.
+    `interfaces` are the unconditional imports, each with its line; `is_program` says whether it
+    starts something by itself, instead of by an entry point of its package.
     """
 
     nodes: list[SourceNode]
     interfaces: dict[str, int]
+    is_program: bool
 
 
 class Sources:
@@ -62,15 +68,21 @@ class Sources:
         return self._files[file]
 
 
-def scan(file: Path) -> list[SourceNode]:
-    """Return the nodes created in a Python file, in line order."""
-    return read_source(file).nodes
-
-
 def read_source(file: Path) -> SourceFile:
     """Parse a Python file; raise MapfileError if it is not valid Python."""
     tree = _parse(file)
-    return SourceFile(_nodes(file, tree), _interfaces(tree))
+    return SourceFile(_nodes(file, tree), _interfaces(tree), _is_program(tree))
+
+
+def _is_program(tree: ast.Module) -> bool:
+    """Return whether the module runs something when it is started."""
+    starts = (ast.If, ast.Expr, ast.Try, ast.With, ast.While, ast.For)
+    return any(
+        isinstance(node, ast.Call)
+        for part in tree.body
+        if isinstance(part, starts)
+        for node in ast.walk(part)
+    )
 
 
 def _nodes(file: Path, tree: ast.Module) -> list[SourceNode]:

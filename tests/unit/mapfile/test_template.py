@@ -14,7 +14,7 @@ pytestmark = pytest.mark.unit
 
 def write_node(file: Path, name: str, kind: str, topic: str = '"chatter"') -> None:
     file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(node_source(name, kind, topic=topic))
+    file.write_text(node_source(name, kind, topic=topic) + "main()\n")
 
 
 def test_only_the_clusters_are_left_to_fill_in(tmp_path: Path) -> None:
@@ -81,6 +81,25 @@ def test_nodes_of_a_launch_file_take_topics_from_their_sources(
     assert "launch_path: demo.launch.xml" in lines
     assert not [line for line in lines if "script" in line]
     assert lines[lines.index("  talker:") + 3] == "      chatter: std_msgs/msg/String"
+
+
+def test_a_module_that_starts_nothing_is_started_by_its_entry_point(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package = tmp_path / "robo"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    (package / "detect.py").write_text(node_source("detector", "publisher"))
+    assert "  # starts nothing: install its package" in init([package], tmp_path)
+    info = tmp_path / "robo-0.1.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: robo\nVersion: 0.1\n")
+    (info / "entry_points.txt").write_text("[console_scripts]\ndetector = robo.detect:main\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    text = init([package], tmp_path)
+    assert "    package: robo\n    executable: detector\n" in text
+    assert "starts nothing" not in text
+    assert "module:" not in text
 
 
 def test_a_computed_topic_is_reported(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -88,3 +89,10 @@ def test_topics_of_a_package_executable_are_known(tmp_path: Path) -> None:
     mapfile.write_text("nodes:\n  a: {cluster: 1, package: rmw_manycore, executable: talker}\n")
     (topic,) = check(mapfile).topics
     assert (topic.name, topic.type) == ("/chatter", "std_msgs/msg/String")
+
+
+def test_a_console_script_is_started_by_the_file_that_pip_wrote() -> None:
+    """Its name labels the process; that of `python -c` would be a line of code."""
+    program = find_executable("rmw-manycore", "manycore")
+    assert program is not None
+    assert program.argv == (str(Path(sys.executable).with_name("manycore")),)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rmw_manycore_py.errors import MapfileError
-from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
+from rmw_manycore_py.mapfile.programs.source import SourceNode, read_source
 
 pytestmark = pytest.mark.unit
 
@@ -14,7 +14,7 @@ pytestmark = pytest.mark.unit
 def scan_text(directory: Path, text: str) -> list[SourceNode]:
     file = directory / "node.py"
     file.write_text(text)
-    return scan(file)
+    return read_source(file).nodes
 
 
 def test_a_class_shows_its_name_topics_and_types(tmp_path: Path) -> None:
@@ -73,3 +73,33 @@ def test_nothing_is_executed(tmp_path: Path) -> None:
 def test_a_file_that_is_not_python_is_refused(tmp_path: Path) -> None:
     with pytest.raises(MapfileError, match=r"node.py:1: expected valid Python"):
         scan_text(tmp_path, "class:\n")
+
+
+def test_publishers_of_lifecycle_nodes_are_found(tmp_path: Path) -> None:
+    (node,) = scan_text(
+        tmp_path,
+        "from rclpy.lifecycle import LifecycleNode\n"
+        "from std_msgs.msg import String\n"
+        "class Detector(LifecycleNode):\n"
+        "    def __init__(self):\n"
+        "        super().__init__('detector')\n"
+        "        self.create_lifecycle_publisher(String, 'boxes', 10)\n",
+    )
+    assert node.publish == {"boxes": "std_msgs/msg/String"}
+
+
+@pytest.mark.parametrize(
+    ("start", "expected"),
+    [
+        ("if __name__ == '__main__':\n    main()\n", True),
+        ("main()\n", True),
+        ("try:\n    main()\nexcept KeyboardInterrupt:\n    pass\n", True),
+        ("", False),
+        ("if TYPE_CHECKING:\n    import rclpy\n", False),
+        ("logger = logging.getLogger('x')\n", False),
+    ],
+)
+def test_a_module_without_a_call_starts_nothing(tmp_path: Path, start: str, expected: bool) -> None:
+    file = tmp_path / "node.py"
+    file.write_text(f"'''Detects.'''\n\ndef main():\n    rclpy.spin(Detector())\n\n{start}")
+    assert read_source(file).is_program is expected
