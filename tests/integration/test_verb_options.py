@@ -108,11 +108,13 @@ def test_meters_wait_for_a_topic(start, manycore) -> None:
     hz.wait_for(r"^WARNING: topic \[/chatter\] does not appear to be published yet$")
     bw = start(manycore_command("topic", "bw", "/chatter"))
     bw.wait_for("WARNING")
+    echo = start(manycore_command("topic", "echo", "/chatter", "std_msgs/msg/String"))
+    echo.wait_for(r"^WARNING: topic \[/chatter\] does not appear to be published yet$")
     start(peer_command(a_bit_of_everything)).wait_for("ready")
     hz.wait_for(r"^average rate: \d+\.\d{3}$")
     bw.wait_for(r"^Subscribed to \[/chatter\]$")
     bw.wait_for(r"^\d+ B/s from \d+ messages$")
-    assert [meter.stop() for meter in (hz, bw)] == [0, 0]
+    assert [meter.stop() for meter in (hz, bw, echo)] == [0, 0, 0]
 
 
 def test_simulated_time_is_that_of_the_clock(start) -> None:

@@ -103,6 +103,8 @@ def test_parameters_are_set(manycore) -> None:
     assert manycore("param", "get", "/filter", "gain", "--hide-type") == "3.5"
     refused = manycore("param", "set", "/filter", "gain", "99.0", status=1)
     assert "Setting parameter failed: Parameter gain out of range" in refused
+    unknown = manycore("param", "set", "/filter", "gian", "3.5", status=1)
+    assert "did you mean 'gain'?" in unknown
     assert "cannot be undeclared" in manycore("param", "delete", "/filter", "name", status=1)
 
 

@@ -65,10 +65,15 @@ class Parameters:
         for parameter, result in zip(parameters, answer.results, strict=True):
             yield parameter.name, result
 
+    def meant_by(self, name: str) -> str:
+        """Return "; did you mean 'x'?" for a name that is not declared."""
+        known = self.names()
+        return "" if name in known else did_you_mean(name, known)
+
     def _not_set(self, names: Iterable[str]) -> ManycoreError:
         known = self.names()
         missing = [name for name in names if name not in known]
-        meant = did_you_mean(missing[0], known) if missing else ""
+        meant = self.meant_by(missing[0]) if missing else ""
         return ManycoreError(f"Parameter not set: {self.node_name} has no {_list(missing)}{meant}")
 
     def _answer(self, future: Any) -> Any:

@@ -27,8 +27,10 @@ def command(node: str, parameter: str, value: str, timeout_s: float, platform: s
     """Set PARAMETER of NODE to VALUE, given in YAML."""
     name = waited_for(platform, node, timeout_s)
     with tool_node(platform) as tool:
-        ((_, result),) = Parameters(tool, name).set([parameter_of(parameter, value)])
+        parameters = Parameters(tool, name)
+        ((_, result),) = parameters.set([parameter_of(parameter, value)])
+        meant = "" if result.successful else parameters.meant_by(parameter)
     reason = f": {result.reason}" if result.reason else ""
     if not result.successful:
-        raise ManycoreError(f"Setting parameter failed{reason}")
+        raise ManycoreError(f"Setting parameter failed{reason}{meant}")
     echo(f"Set parameter successful{reason}")

@@ -82,14 +82,12 @@ class Listener:
                 spin_once(node, max(end_s - time.monotonic(), 0))
 
     def _wait_for_topic(self, node: Any) -> None:
-        if self._type_name or _endpoints(self._platform, self._topic):
-            return
-        echo(
-            f"WARNING: topic [{self._topic}] does not appear to be published yet"
-            f"{did_you_mean(self._topic, _topics(self._platform))}",
-            err=True,
-        )
-        while not _endpoints(self._platform, self._topic):
+        endpoints = _endpoints(self._platform, self._topic)
+        if not any(endpoint.kind == "publisher" for endpoint in endpoints):
+            meant = "" if endpoints else did_you_mean(self._topic, _topics(self._platform))
+            text = f"WARNING: topic [{self._topic}] does not appear to be published yet{meant}"
+            echo(text, err=True)
+        while not self._type_name and not _endpoints(self._platform, self._topic):
             spin_once(node)
 
     def _subscribe(self, node: Any) -> None:
