@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rmw_manycore_py.cli.doctor.report.environment import short_path
 from rmw_manycore_py.errors import what_is_wrong
 
-_MIDDLEWARES = ("librmw_", "libfastrtps.", "libfastdds.")
+if TYPE_CHECKING:
+    from rmw_manycore_py.native._transport import EndpointInfo
+
+_MIDDLEWARES = re.compile(r"(librmw_(?!dds_common)|libfastrtps\.|libfastdds\.).*")
+_ORDINARY = {"liveliness": "automatic"}
 
 
 def platforms() -> list[dict[str, Any]]:
@@ -43,17 +48,38 @@ def _snapshot(name: str) -> dict[str, Any]:
                 }
                 for process in opened.processes()
             ],
-            "endpoints": [rows.endpoint_row(endpoint) for endpoint in endpoints],
+            "endpoints": [_line(endpoint) for endpoint in endpoints if endpoint.role == "topic"],
+            "endpoints of services": sum(endpoint.role != "topic" for endpoint in endpoints),
             "losses": view.losses(endpoints),
         }
 
 
-def _loaded(pid: int) -> list[str] | str:
+def _line(endpoint: EndpointInfo) -> str:
+    """Return an endpoint in one line, with what it counted and what is out of the ordinary."""
+    from rmw_manycore_py.cli.common.rows import counters_row
+    from rmw_manycore_py.ros.names import full_node_name
+    from rmw_manycore_py.ros.qos import policies_of
+
+    policies = policies_of(endpoint.qos).items()
+    kept = [
+        f"{name}={value}" if name.endswith("_ns") else str(value)
+        for name, value in policies
+        if value is not None and _ORDINARY.get(name) != value
+    ]
+    counts = [f"{name} {count}" for name, count in counters_row(endpoint.counters).items() if count]
+    return (
+        f"{endpoint.kind} of {endpoint.topic} ({endpoint.type}) by "
+        f"{full_node_name(endpoint.node_namespace, endpoint.node_name)}: {' '.join(kept)}; "
+        f"{', '.join([endpoint.transfer, f'matched {endpoint.matched}', *counts])}"
+    )
+
+
+def _loaded(pid: int) -> str:
     """Return the middleware libraries a process has loaded; a stand-in lies in standin/."""
     try:
         lines = Path(f"/proc/{pid}/maps").read_text(errors="replace").splitlines()
     except OSError as error:
         return f"not readable: {error.strerror}"
     files = {line.split(maxsplit=5)[5] for line in lines if line.count("/")}
-    named = (file for file in files if Path(file).name.startswith(_MIDDLEWARES))
-    return sorted(map(short_path, named)) or "none"
+    named = (file for file in files if _MIDDLEWARES.fullmatch(Path(file).name))
+    return ", ".join(sorted(map(short_path, named))) or "none"
