@@ -15,6 +15,7 @@ from contextlib import contextmanager
 
 import click
 
+from rmw_manycore_py.cli.common.completion import complete_nodes_of_runs
 from rmw_manycore_py.cli.common.detach_keys import DetachKeys, parse_keys
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.printing import echo
@@ -32,7 +33,7 @@ _STDIN, _STDOUT = 0, 1
 @click.command(
     "attach", epilog=examples("manycore attach teleop", "manycore attach --restart my_node")
 )
-@click.argument("node")
+@click.argument("node", shell_complete=complete_nodes_of_runs)
 @click.option("--restart", "restarts", is_flag=True, help="Restart NODE with a terminal first.")
 @click.option(
     "--detach-keys",

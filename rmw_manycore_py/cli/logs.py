@@ -11,6 +11,7 @@ from dataclasses import asdict
 
 import click
 
+from rmw_manycore_py.cli.common.completion import complete_nodes_of_runs
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.cli.common.runs import no_run, nodes_by_run
@@ -30,7 +31,7 @@ from rmw_manycore_py.launch.runs.log_reader import LogLine, NodeLog, in_order
         "manycore logs --tail 20 --timestamps talker",
     ),
 )
-@click.argument("nodes", nargs=-1)
+@click.argument("nodes", nargs=-1, shell_complete=complete_nodes_of_runs)
 @click.option("-f", "--follow", is_flag=True, help="Follow the output until Ctrl-C.")
 @click.option(
     "-n",

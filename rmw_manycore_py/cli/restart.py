@@ -8,6 +8,7 @@ import time
 
 import click
 
+from rmw_manycore_py.cli.common.completion import complete_nodes_of_runs
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
@@ -22,7 +23,7 @@ LOOK_S = 1.0
 
 
 @click.command("restart", epilog=examples("manycore restart talker", "manycore restart"))
-@click.argument("nodes", nargs=-1)
+@click.argument("nodes", nargs=-1, shell_complete=complete_nodes_of_runs)
 @platform_option
 def command(nodes: tuple[str, ...], platform: str) -> None:
     """Restart NODES, by default all.

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import click
 
+from rmw_manycore_py.cli.common.completion import complete_nodes_of_runs
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
@@ -25,7 +26,7 @@ from rmw_manycore_py.native.errors import translate_native_errors
     "stop",
     epilog=examples("manycore stop", "manycore stop talker", "manycore stop --platform domain-3"),
 )
-@click.argument("nodes", nargs=-1)
+@click.argument("nodes", nargs=-1, shell_complete=complete_nodes_of_runs)
 @click.option("--now", is_flag=True, help="Do not wait for slow nodes.")
 @platform_option
 def command(nodes: tuple[str, ...], now: bool, platform: str) -> None:

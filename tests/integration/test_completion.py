@@ -109,6 +109,21 @@ def test_bash_completes(complete, tmp_path) -> None:
     assert dict(zip(expected, found, strict=True)) == expected
 
 
+def test_nodes_of_a_run_are_offered(complete, start, tmp_path) -> None:
+    mapfile = tmp_path / "sleepers.yaml"
+    nodes = "".join(
+        f"  {name}: {{command: sleep 1000, ros_arguments: false, cluster: 1, core: {core}}}\n"
+        for core, name in enumerate(("left", "right"), start=1)
+    )
+    mapfile.write_text(f"nodes:\n{nodes}")
+    run = start(manycore_command("run", str(mapfile), "--join"), HOME=str(tmp_path))
+    run.wait_for("right started")
+    verbs = ("restart", "stop", "logs", "attach")
+    lines = [f"manycore {verb} {typed}" for verb in verbs for typed in ("", "le")]
+    found = complete(["bash", "--norc", "-c", BASH, "bash"], tmp_path, lines)
+    assert found == [["left", "right"], ["left"]] * len(verbs)
+
+
 @pytest.mark.needs("zsh", "fish")
 @pytest.mark.parametrize(
     ("shell", "options"), [("zsh", ["-f", "-c", ZSH, "zsh"]), ("fish", ["--no-config", "-c", FISH])]

@@ -16,6 +16,7 @@ from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.interface_types import types_of_kind
 from rmw_manycore_py.cli.common.rows import Row
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.launch.runs.directory import runs_of
 from rmw_manycore_py.native._transport import EndpointInfo
 from rmw_manycore_py.ros import ament
 from rmw_manycore_py.ros.domain import default_platform
@@ -72,6 +73,11 @@ def _nodes(context: click.Context) -> list[str]:
         return view.node_names(opened.nodes(), hidden=_is_hidden_wanted(context))
 
 
+def _nodes_of_runs(context: click.Context) -> Iterator[str]:
+    runs = runs_of(platform_of(context))
+    return (node for run in runs if run.is_alive for node in run.nodes if node[0] != "(")
+
+
 def _used_types(rows: _Rows, argument: str, kind: str) -> _Names:
     """Return a function that lists the types of the named topic or service, else all of a kind."""
 
@@ -87,6 +93,7 @@ def _used_types(rows: _Rows, argument: str, kind: str) -> _Names:
 
 complete_platforms = completer(lambda _context: view.platform_names())
 complete_nodes = completer(_nodes)
+complete_nodes_of_runs = completer(_nodes_of_runs)
 complete_topics = completer(_topics)
 complete_services = completer(_services)
 complete_actions = completer(_actions)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import click
 
+from rmw_manycore_py.cli.common.completion import complete_nodes
 from rmw_manycore_py.cli.common.options import examples, number_option, platform_option
 from rmw_manycore_py.cli.common.view import require_platform
 from rmw_manycore_py.native import _transport
@@ -22,7 +23,13 @@ from rmw_manycore_py.native.errors import translate_native_errors
     type=click.IntRange(1, 64),
     help="Trace only this cluster.",
 )
-@click.option("--node", "nodes", multiple=True, help="Trace only this node (full name).")
+@click.option(
+    "--node",
+    "nodes",
+    multiple=True,
+    shell_complete=complete_nodes,
+    help="Trace only this node (full name).",
+)
 @number_option(
     "--events",
     within=(1, 1 << 24),
