@@ -39,7 +39,7 @@ from rmw_manycore_py.platform.topology import as_host_cpu, host_cpu_text
 
 _EXAMPLES = examples(
     "manycore create talker_listener -o generated",
-    "manycore create autoware_reference -o generated --report",
+    "manycore create autoware_reference -o generated --report --compare",
 )
 
 
@@ -57,18 +57,23 @@ _EXAMPLES = examples(
     "--report",
     "with_figure",
     is_flag=True,
-    help="Report the lines saved by mapfiles: a table, and Fig. 12 of ROS-lite2 in DIRECTORY.",
+    help="Report the lines that MAPFILE saves: a table, and Fig. 12 of ROS-lite2 in DIRECTORY.",
 )
+@click.option("--compare", is_flag=True, help="With --report: also the installed mapfiles.")
 @json_option
-def command(mapfile: Path, directory: Path, with_figure: bool, as_json: bool) -> None:
+def command(
+    mapfile: Path, directory: Path, with_figure: bool, compare: bool, as_json: bool
+) -> None:
     """Generate all files that MAPFILE implies.
 
     Topic table, launch scripts, parameter files and memory report.
     """
+    if compare and not with_figure:
+        raise click.UsageError("--compare belongs to --report.")
     if with_figure:
         load_figure()
     report = create(mapfile, directory)
-    dots = _draw_figure(mapfile, directory) if with_figure else []
+    dots = _draw_figure(mapfile, directory, compare=compare) if with_figure else []
     if as_json:
         data = as_data(report.placement)
         print_json(
@@ -98,10 +103,10 @@ def command(mapfile: Path, directory: Path, with_figure: bool, as_json: bool) ->
         _print_figure(dots, directory / FILE)
 
 
-def _draw_figure(mapfile: Path, directory: Path) -> list[Dot]:
-    """Plot the installed mapfiles and this one; skip mapfiles that are invalid here."""
+def _draw_figure(mapfile: Path, directory: Path, *, compare: bool) -> list[Dot]:
+    """Plot this mapfile, and the installed ones that are valid here to compare it with."""
     dots = [dot_of(mapfile)]
-    for installed in installed_mapfiles().values():
+    for installed in installed_mapfiles().values() if compare else ():
         if not installed.samefile(mapfile):
             with suppress(ManycoreError):
                 dots.append(dot_of(installed))

@@ -9,10 +9,12 @@ from pathlib import Path, PurePosixPath
 
 import yaml
 
+from rmw_manycore_py.create.papers_mapfile import papers_mapfile
 from rmw_manycore_py.create.report import CreateReport, count_lines, delta_loc
 from rmw_manycore_py.create.scripts import launch_script
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.mapfile import load_mapfile, resolve
+from rmw_manycore_py.mapfile.format.mapfile import Mapfile
 from rmw_manycore_py.mapfile.launch_file import ExpandedFile
 from rmw_manycore_py.mapfile.placing.parameter_values import Values
 from rmw_manycore_py.mapfile.placing.parameters import Source, file_names
@@ -20,6 +22,7 @@ from rmw_manycore_py.mapfile.placing.placement import PARAMETERS, PlacedNode, Pl
 
 TOPIC_TABLE = "topic_table.yaml"
 MEMORY = "memory.yaml"
+MAPFILE = "mapfile.yaml"
 NODES = "nodes"
 
 _SCRIPT_MODE = 0o755
@@ -33,6 +36,7 @@ def create(mapfile_path: Path | str, out_dir: Path | str) -> CreateReport:
     texts = {
         PurePosixPath(TOPIC_TABLE): _topic_table(placement),
         PurePosixPath(MEMORY): _memory(placement),
+        PurePosixPath(MAPFILE): _mapfile(mapfile, placement),
     }
     for node in placement.nodes:
         texts |= _node_files(node)
@@ -78,6 +82,17 @@ def _memory(placement: Placement) -> str:
         for memory in placement.memory
     }
     return _yaml({"clusters": clusters})
+
+
+def _mapfile(mapfile: Mapfile, placement: Placement) -> str:
+    files = {
+        node.name: [
+            f"{PARAMETERS}/{name}" for name in file_names(node.parameter_sources, node.file_stem)
+        ]
+        for node in placement.nodes
+    }
+    # Fig. 8 has `none:`, without a value.
+    return _yaml(papers_mapfile(mapfile, placement.nodes, files)).replace("none: null\n", "none:\n")
 
 
 def _node_files(node: PlacedNode) -> dict[PurePosixPath, str]:

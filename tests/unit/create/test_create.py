@@ -12,6 +12,8 @@ import yaml
 
 from rmw_manycore_py.create import create
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.mapfile import check
+from support import MAPFILES
 
 pytestmark = pytest.mark.unit
 
@@ -70,6 +72,33 @@ def test_the_topic_table_is_that_of_figure_7(mapfile: Path, tmp_path: Path) -> N
             }
         ]
     }
+
+
+def test_the_mapfile_of_figure_8_is_written(tmp_path: Path) -> None:
+    example = MAPFILES / "talker_listener.yaml"
+    create(example, tmp_path / "out")
+    text = (tmp_path / "out/mapfile.yaml").read_text()
+    assert "    topic_in:\n      none:\n" in text
+    written = yaml.safe_load(text)
+    launch = (MAPFILES / "../launch_scripts/talker_listener.launch.xml").resolve()
+    assert written["launch_path"] == str(launch)
+    nodes = yaml.safe_load(example.read_text())["nodes"]
+    nodes["talker"]["param_file"] = "parameters/talker.yaml"  # the launch file has a parameter
+    assert written["nodes"] == nodes
+    again = check(tmp_path / "out/mapfile.yaml").nodes
+    assert [(n.full_name, n.cluster, n.core) for n in again] == [
+        ("/talker", 1, 1),
+        ("/listener", 2, 1),
+    ]
+
+
+def test_the_mapfile_of_figure_8_names_the_parameter_files(mapfile: Path, tmp_path: Path) -> None:
+    create(mapfile, tmp_path / "out")
+    nodes = yaml.safe_load((tmp_path / "out/mapfile.yaml").read_text())["nodes"]
+    files = nodes["talker"]["param_file"]
+    assert len(files) == 2
+    assert all((tmp_path / "out" / file).is_file() for file in files)
+    assert set(nodes["talker"]) == {"cluster", "core", "topic_in", "topic_to", "param_file"}
 
 
 def test_memory_is_set_against_the_clusters_smem(mapfile: Path, tmp_path: Path) -> None:

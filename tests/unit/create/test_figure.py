@@ -30,10 +30,12 @@ def test_the_papers_set_of_nodes_takes_fewer_lines_than_the_paper_says() -> None
 
 
 @pytest.mark.needs("matplotlib")
-def test_the_report_has_each_installed_mapfile(tmp_path: Path) -> None:
+def test_the_report_is_of_the_mapfile_and_compares_on_request(tmp_path: Path) -> None:
     mapfile = MAPFILES / "talker_listener.yaml"
     words = ("create", str(mapfile), "-o", str(tmp_path), "--report", "--json")
-    done = CliRunner().invoke(cli, words)
+    own = CliRunner().invoke(cli, words)
+    assert [dot["name"] for dot in json.loads(own.stdout)["figure"]] == ["talker_listener"]
+    done = CliRunner().invoke(cli, (*words, "--compare"))
     assert done.exit_code == 0, done.output
     dots = {dot["name"]: dot for dot in json.loads(done.stdout)["figure"]}
     assert {"talker_listener", "autoware_reference", "three_nodes", "three_nodes.map"} <= set(dots)
