@@ -41,6 +41,7 @@ BIRTH_S = 0.1
 BURST_S = 10.0
 RECEIVE_THREAD_LIFE_S = 20.0
 LEAVING = 0.3  # share of the nodes that end by themselves; the others are killed
+RESTING_BYTES = 4 << 20  # of SMEM: four times what the lasting nodes hold
 STOPPED = 0.1  # share of the killed that hang for a while before
 
 
@@ -98,6 +99,7 @@ class Soak:
         except AssertionError:
             raise AssertionError(self._left()) from None
         self._renew_publishers()
+        wait_until(self._is_freed, "what the gone nodes held is freed")
         self._load.assert_in_order()
         # On a busy machine the queues of the checking nodes may overflow; missing messages are
         # counted.
@@ -115,6 +117,9 @@ class Soak:
     def _is_at_rest(self) -> bool:
         held = look(self._platform, self.lasting)
         return held.process_slots == held.nodes == len(self.lasting)
+
+    def _is_freed(self) -> bool:
+        return look(self._platform, self.lasting).smem_used_bytes < RESTING_BYTES
 
     def _lost(self) -> int:
         with Platform(self._platform) as seen:
