@@ -54,6 +54,7 @@ class Publisher(_Row):
     outside_callbacks: Count | None  # of them: by threads that ran no callback
     interval_ns: Distribution | None
     size_bytes: Distribution | None
+    publish_ns: Distribution | None = None  # from the call until readers see the message
 
 
 class Subscription(_Row):
@@ -105,6 +106,7 @@ class Callback(_Row):
     cpu_ns: Distribution | None
     interval_ns: Distribution | None  # from begin to begin
     publishes: tuple[Output, ...]
+    dispatch_ns: Distribution | None = None  # before its begin: the executor's work, and the take
 
     @property
     def load_cpus(self) -> float:

@@ -161,11 +161,13 @@ class _Recorded:
             outside_callbacks=self._outside[key],
             interval_ns=intervals_of(array("q", [one.at_ns for one in published])),
             size_bytes=distribution_of(array("q", [one.size_bytes for one in published])),
+            publish_ns=distribution_of(array("q", [one.publish_ns for one in published])),
         )
 
     def _callback(self, seen: _Seen) -> Callback:
         turns = seen.turns
         interval_ns = intervals_of(array("q", [one.begin_ns for one in turns]))
+        dispatch_ns = [one.dispatch_ns for one in turns if one.dispatch_ns is not None]
         cpu_ns = [round(one.cpu_ns) for one in turns if one.cpu_ns is not None]
         period_ns = None
         if seen.kind == "timer" and interval_ns is not None:
@@ -186,6 +188,7 @@ class _Recorded:
             cpu_ns=distribution_of(array("q", cpu_ns)),
             interval_ns=interval_ns,
             publishes=self._outputs(turns),
+            dispatch_ns=distribution_of(array("q", dispatch_ns)),
         )
 
     def _only_node(self, process: int) -> str:

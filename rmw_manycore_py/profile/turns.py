@@ -21,6 +21,7 @@ class Publication:
     endpoint: EndpointId
     at_ns: int
     size_bytes: int
+    publish_ns: int = 0  # until readers see it
 
 
 @dataclass
@@ -30,6 +31,7 @@ class Turn:
     trigger: EndpointId | None
     begin_ns: int
     timed_out: bool = False
+    dispatch_ns: int | None = None  # since the thread was free
     end_ns: int | None = None
     cpu_ns: float | None = None  # None if unknown
     publications: list[Publication] = field(default_factory=list)
@@ -91,18 +93,20 @@ def turns_of(rows: Iterable[Row], outside: Outside) -> Iterator[Turn]:
     woken_ns: int | None = None
     turn: Turn | None = None
     publish_ns: int | None = None
+    free_ns: int | None = None
     for time_ns, number, value, slot, incarnation, kind in rows:
         if kind == Kind.PUBLISH_BEGIN:
             publish_ns = time_ns
         elif kind == Kind.WRITE:
             at_ns = time_ns if publish_ns is None else publish_ns
-            publication = Publication(endpoint_id(slot, incarnation), at_ns, value)
+            publication = Publication(endpoint_id(slot, incarnation), at_ns, value, time_ns - at_ns)
             (outside if turn is None else turn).publications.append(publication)
             publish_ns = None
         elif kind in (Kind.CLAIM, Kind.WAIT_BEGIN):
             if turn is not None:
                 turn.end_ns = time_ns
                 cpu.add(turn)
+                free_ns = turn.begin_ns if _is_idle(turn) else time_ns
                 turn = None
             if kind == Kind.WAIT_BEGIN:
                 cpu.pass_time(0 if woken_ns is None else time_ns - woken_ns)
@@ -110,6 +114,8 @@ def turns_of(rows: Iterable[Row], outside: Outside) -> Iterator[Turn]:
                 yield from cpu.read(number)
         elif kind == Kind.RELEASE:
             turn = Turn(endpoint_id(slot, incarnation), time_ns)
+            turn.dispatch_ns = None if free_ns is None else time_ns - free_ns
+            free_ns = None
         elif kind == Kind.WAIT_END:
             yield from cpu.read(number)
             woken_ns = time_ns
@@ -117,3 +123,8 @@ def turns_of(rows: Iterable[Row], outside: Outside) -> Iterator[Turn]:
     yield from cpu.rest()
     if turn is not None:
         yield turn
+
+
+def _is_idle(turn: Turn) -> bool:
+    """Return whether a thread only woke up before it took a message."""
+    return not turn.is_callback

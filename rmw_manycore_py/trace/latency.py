@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from rmw_manycore_py.trace.chains import Chain, Messages, Passage
+from rmw_manycore_py.trace.chains import CausedMessages, Chain, Passage
 from rmw_manycore_py.trace.matching import Matching
 
 TOTAL = "total"  # part that is the sum of the others
@@ -74,7 +74,7 @@ class ChainLatency:
         }
 
 
-def latencies(messages: Messages, chains: Sequence[Chain]) -> list[ChainLatency]:
+def latencies(messages: CausedMessages, chains: Sequence[Chain]) -> list[ChainLatency]:
     """Return the latency of each chain, one per path through nodes."""
     found = []
     for chain in chains:

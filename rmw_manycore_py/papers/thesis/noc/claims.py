@@ -6,8 +6,8 @@ from __future__ import annotations
 from typing import Protocol
 
 from rmw_manycore_py.bench.relations import Claim, Found, side
-from rmw_manycore_py.papers.thesis.bostan.dma import METHODS, Method
-from rmw_manycore_py.papers.thesis.bostan.memory import MEMORIES, MemoryKind
+from rmw_manycore_py.bostan.dma import METHODS, Method
+from rmw_manycore_py.bostan.memory import MEMORIES, MemoryKind
 from rmw_manycore_py.papers.thesis.noc.cases import (
     FLOW_CONTROL,
     NO_FLOW_CONTROL,

@@ -11,26 +11,26 @@ from itertools import permutations
 
 import pytest
 
-from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.papers.thesis.bostan import routing, topology
-from rmw_manycore_py.papers.thesis.bostan.cache import Cache
-from rmw_manycore_py.papers.thesis.bostan.chip import run
-from rmw_manycore_py.papers.thesis.bostan.fifo import Fifo
-from rmw_manycore_py.papers.thesis.bostan.memory import Memory
-from rmw_manycore_py.papers.thesis.bostan.packets import (
+from rmw_manycore_py.bostan import routing, topology
+from rmw_manycore_py.bostan.cache import Cache
+from rmw_manycore_py.bostan.chip import run
+from rmw_manycore_py.bostan.fifo import Fifo
+from rmw_manycore_py.bostan.memory import Memory
+from rmw_manycore_py.bostan.packets import (
     MAX_TRANSFER_BYTES,
     Packet,
     flits_of,
     payloads,
 )
-from rmw_manycore_py.papers.thesis.bostan.parameters import (
+from rmw_manycore_py.bostan.parameters import (
     REFRESH_INTERVAL_S,
     REFRESH_S,
     Parameters,
     corners,
     range_of,
 )
-from rmw_manycore_py.papers.thesis.bostan.transfers import Transfer
+from rmw_manycore_py.bostan.transfers import Transfer
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.papers.thesis.noc.cases import Case
 from rmw_manycore_py.papers.thesis.noc.model import ROUTES, SETTING, relevant
 

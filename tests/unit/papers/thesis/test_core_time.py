@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from rmw_manycore_py.papers.thesis.bostan.parameters import Parameters
+from rmw_manycore_py.bostan.parameters import Parameters
 from rmw_manycore_py.papers.thesis.matrix.core_time import product_cycles
 
 pytestmark = pytest.mark.unit

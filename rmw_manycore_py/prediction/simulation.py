@@ -1,0 +1,307 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Puts the parts of a simulation together, and runs it."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from simpy import Environment
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.platform.smem import DEFAULT_DEPTH
+from rmw_manycore_py.platform.topology import RECEIVE_THREAD_CORE, Core
+from rmw_manycore_py.prediction.application import Application, ExecutorPlan, period_of
+from rmw_manycore_py.prediction.cpu import Cpu, Task
+from rmw_manycore_py.prediction.draws import Blocks, Floats, Quantiles, samples
+from rmw_manycore_py.prediction.events import EventLog
+from rmw_manycore_py.prediction.executors import Executor, ExecutorThread, Group, Work
+from rmw_manycore_py.prediction.network import Network
+from rmw_manycore_py.prediction.sites import Site, Sites
+from rmw_manycore_py.prediction.sources import Source, Timer, publication, request
+from rmw_manycore_py.prediction.target import Target
+from rmw_manycore_py.prediction.topics import Delivery, Publisher, ReceiveThread, Subscription
+from rmw_manycore_py.prediction.work import Demand, joins_of
+from rmw_manycore_py.profile.model import Callback, Distribution
+
+_FEW = 0.02  # of a publisher's messages: those outside of callbacks are of its start
+_SHARED_SITE = Site(Core(1, 1))
+
+
+@dataclass(eq=False)
+class Placed:
+    """A process of the simulation."""
+
+    label: str
+    nodes: tuple[str, ...]
+    site: Site
+    other: EventLog  # of publications outside of callbacks
+    threads: list[tuple[Task, EventLog]] = field(default_factory=list)
+
+    @property
+    def used_ns(self) -> float:
+        """CPU time of all threads."""
+        return sum(task.used_ns for task, _ in self.threads)
+
+
+class Simulation:
+    """An application at its places on a target."""
+
+    def __init__(
+        self, application: Application, sites: Sites, target: Target, seed: int, is_traced: bool
+    ) -> None:
+        self.env = Environment()
+        self.application = application
+        self.profile = application.profile
+        self.sites = sites
+        self.target = target
+        self._seed = seed
+        self._is_traced = is_traced
+        self._shares = np.array(self.profile.quantile_shares)
+        self._cpus: dict[object, Cpu] = {}
+        self.network = Network(target)
+        self.receive_threads: dict[int, ReceiveThread] = {}
+        self.delivery = Delivery(self.env, self.network, self.receive_threads)
+        self.processes = self._processes()
+        self.publishers = self._publishers()
+        self.all_publishers = list(self.publishers)  # with those outside of the profile
+        self.works: dict[int, Work] = {}
+        self.timers: dict[int, Timer] = {}
+        self._joins = joins_of(self.profile)
+        self._groups: dict[int, Group] = defaultdict(Group)
+        for plan in application.executors:
+            self._add_executor(plan)
+        self._connect()
+        self._add_outside_publications()
+
+    def random(self, *keys: int) -> np.random.Generator:
+        """Return the random numbers of one part; they do not depend on other parts."""
+        return np.random.default_rng([self._seed, *keys])
+
+    def run(self, duration_s: float) -> None:
+        """Run for some time."""
+        self.env.run(until=duration_s * 1e9)
+
+    # -- CPUs and processes
+
+    def _cpu(self, key: object) -> Cpu:
+        if key not in self._cpus:
+            target = self.target
+            self._cpus[key] = Cpu(self.env, target.ns("slice_us"), target.ns("switch_us"))
+        return self._cpus[key]
+
+    def _cpus_of(self, site: Site) -> tuple[Cpu, ...]:
+        if self.target.cpus == "cores":
+            return (self._cpu(site.core),)
+        if self.target.cpus == "shared":
+            return tuple(map(self._cpu, range(round(self.target.cpu_count))))
+        known = {cpu for one in self.sites.nodes.values() for cpu in one.host_cpus}
+        return tuple(map(self._cpu, sorted(site.host_cpus or known)))
+
+    def _wake_ns(self, task: Task) -> float:
+        is_idle = any(cpu.current is None for cpu in task.cpus)
+        return self.target.ns("wake_us" if is_idle else "wake_busy_us")
+
+    def _processes(self) -> list[Placed]:
+        found = []
+        for plan in self.application.processes:
+            names = tuple(self.profile.nodes[index].name for index in plan.nodes)
+            known = [site for name in names if (site := self.sites.of(name)) is not None]
+            site = known[0] if known else _SHARED_SITE
+            if not known and self.target.cpus != "shared":
+                raise ManycoreError(
+                    f"the mapfile does not place {names[0]}, which is in the profile: use the "
+                    "profile of this application (manycore profile record MAPFILE)",
+                    EXIT_BAD_INPUT,
+                )
+            found.append(Placed(plan.label, names, site, EventLog.new(self._is_traced)))
+        return found
+
+    def _process_of_node(self) -> dict[int, Placed]:
+        plans = self.application.processes
+        return {
+            node: placed
+            for plan, placed in zip(plans, self.processes, strict=True)
+            for node in plan.nodes
+        }
+
+    # -- topics
+
+    def _publishers(self) -> list[Publisher]:
+        placed = self._process_of_node()
+        found = []
+        for index, one in enumerate(self.profile.publishers):
+            node = None if one.node is None else self.profile.nodes[one.node].name
+            cluster = 1 if one.node is None else placed[one.node].site.core.cluster
+            publish_ns = one.publish_ns.mean / self.target.speed if one.publish_ns else None
+            found.append(
+                Publisher(
+                    endpoint=index,
+                    topic=one.topic,
+                    node=node or "",
+                    cluster=cluster,
+                    publish_ns=self.target.ns("publish_us") if publish_ns is None else publish_ns,
+                    sizes=self._blocks(one.size_bytes, 2, index),
+                    ring_bytes=self.sites.rings.get(one.topic),
+                    is_transferred=one.topic in self.sites.transferred,
+                )
+            )
+        return found
+
+    def _blocks(self, distribution: Distribution | None, *keys: int) -> Blocks | None:
+        if distribution is None:
+            return None
+        return samples(self.random(*keys), Quantiles(self._shares, distribution))
+
+    def _subscription(self, index: int, executor: Executor, work: Work, placed: Placed) -> None:
+        callback = self.profile.callbacks[index]
+        node = "" if callback.node is None else self.profile.nodes[callback.node].name
+        depth = self.sites.depths.get((node, callback.trigger))
+        if depth is None and callback.subscription is not None:
+            depth = self.profile.subscriptions[callback.subscription].queue_depth
+        work.subscription = Subscription(
+            endpoint=len(self.publishers) + index,
+            topic=callback.trigger,
+            node=node,
+            cluster=placed.site.core.cluster,
+            depth=depth or DEFAULT_DEPTH,
+            notify=lambda: executor.notify(work),
+        )
+
+    def _connect(self) -> None:
+        """Tell publishers about subscriptions, and start what nothing in the profile publishes."""
+        by_topic: dict[str, list[Subscription]] = defaultdict(list)
+        for index, work in self.works.items():
+            if work.subscription is not None and index in self.application.driven:
+                by_topic[work.subscription.topic].append(work.subscription)
+        for publisher in self.publishers:
+            self._match(publisher, by_topic[publisher.topic])
+        outside: dict[str, list[int]] = defaultdict(list)
+        for index, work in self.works.items():
+            if work.subscription is not None and index not in self.application.driven:
+                outside[work.subscription.topic].append(index)
+        for topic, indices in outside.items():
+            self._add_topic_from_outside(topic, indices)
+
+    def _match(self, publisher: Publisher, subscriptions: list[Subscription]) -> None:
+        for one in subscriptions:
+            if one.cluster == publisher.cluster:
+                publisher.near.append(one)
+            else:
+                publisher.far.setdefault(one.cluster, []).append(one)
+                self._ensure_receive_thread(one.cluster)
+
+    def _ensure_receive_thread(self, cluster: int) -> None:
+        if cluster in self.receive_threads:
+            return
+        core = Core(cluster, RECEIVE_THREAD_CORE)
+        cpu = self.sites.receive_cpus.get(cluster)
+        cpus = self._cpus_of(Site(core, () if cpu is None else (cpu,)))
+        self.receive_threads[cluster] = ReceiveThread(
+            self.env,
+            cluster,
+            Task(cpus),
+            self.target.ns("receive_us") / self.target.speed,
+            self._wake_ns,
+            EventLog.new(self._is_traced),
+        )
+
+    def _add_topic_from_outside(self, topic: str, indices: list[int]) -> None:
+        callback = self.profile.callbacks[indices[0]]
+        intervals = self._intervals(callback, 3, indices[0])
+        subscriptions = [self.works[index].subscription for index in indices]
+        known = [one for one in subscriptions if one is not None]
+        publisher = Publisher(
+            len(self.publishers) + len(self.profile.callbacks) + indices[0],
+            *(topic, "", known[0].cluster, 0.0, None, None),
+        )
+        self.all_publishers.append(publisher)
+        self._match(publisher, known)
+        happen = publication(self.env, self.delivery, publisher, EventLog.new(False))
+        source = Source(self.env, intervals, happen)
+        source.start(self.random(4, indices[0]).random())
+
+    def _intervals(self, callback: Callback, *keys: int) -> Blocks:
+        if callback.interval_ns is not None:
+            return samples(self.random(*keys), Quantiles(self._shares, callback.interval_ns))
+        mean_ns = 1e9 / (callback.rate_hz or 1.0)
+        return Blocks(lambda count: np.full(count, mean_ns))
+
+    def _add_outside_publications(self) -> None:
+        placed = self._process_of_node()
+        for index, one in enumerate(self.profile.publishers):
+            few = _FEW * (one.publications or 0)
+            if not one.outside_callbacks or one.outside_callbacks <= few or not one.interval_ns:
+                continue
+            scale = (one.publications or 0) / one.outside_callbacks
+            quantiles = Quantiles(self._shares, one.interval_ns)
+            random = self.random(5, index)
+            intervals = Blocks(_scaled(random, quantiles, scale))
+            publisher = self.publishers[index]
+            log = EventLog.new(False) if one.node is None else placed[one.node].other
+            happen = publication(self.env, self.delivery, publisher, log)
+            Source(self.env, intervals, happen).start(random.random())
+
+    # -- executors
+
+    def _add_executor(self, plan: ExecutorPlan) -> None:
+        placed = self.processes[plan.process]
+        executor = Executor(self.env, self._wake_ns)
+        for order, index in enumerate(plan.callbacks):
+            self._add_work(index, order, executor, placed)
+        cpus = self._cpus_of(placed.site)
+        for _ in range(plan.threads):
+            task = Task.of(cpus, placed.site.scheduling)
+            log = EventLog.new(self._is_traced)
+            placed.threads.append((task, log))
+            thread = ExecutorThread(
+                self.env,
+                executor,
+                task,
+                log,
+                placed.site.core.cluster,
+                self.delivery,
+                self.network,
+            )
+            executor.idle.append(thread)
+
+    def _add_work(self, index: int, order: int, executor: Executor, placed: Placed) -> None:
+        callback = self.profile.callbacks[index]
+        group = self.application.groups.get(index)
+        work = Work(
+            index,
+            order,
+            Demand(self.profile, callback, self.random(6, index), self.target.speed, {}),
+            self._dispatch(callback, index),
+            {one.publisher: self.publishers[one.publisher] for one in callback.publishes},
+            None if group is None else self._groups[group],
+            self._joins.get(index),
+        )
+        self.works[index] = work
+        executor.works.append(work)
+        if callback.kind == "subscription":
+            self._subscription(index, executor, work, placed)
+        elif callback.kind == "timer" and (period_ns := period_of(callback)):
+            timer = Timer(self.env, period_ns, executor, work)
+            self.timers[index] = timer
+            timer.start(self.random(7, index).random())
+        else:
+            source = Source(self.env, self._intervals(callback, 8, index), request(executor, work))
+            source.start(self.random(9, index).random())
+
+    def _dispatch(self, callback: Callback, index: int) -> Blocks:
+        found = self._blocks(callback.dispatch_ns, 10, index)
+        speed = self.target.speed
+        if found is not None:
+            values = found
+            return Blocks(lambda count: np.array([values.next() for _ in range(count)]) / speed)
+        default_ns = self.target.ns("dispatch_us") / speed
+        return Blocks(lambda count: np.full(count, default_ns))
+
+
+def _scaled(
+    random: np.random.Generator, quantiles: Quantiles, scale: float
+) -> Callable[[int], Floats]:
+    return lambda count: quantiles.at(random.random(count)) * scale

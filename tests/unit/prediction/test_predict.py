@@ -1,0 +1,126 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Predictions of made profiles, whose times follow by hand."""
+
+from __future__ import annotations
+
+import pytest
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.prediction import TARGETS, Prediction, Target, predict
+from rmw_manycore_py.profile.model import Node, Profile
+from support.samples.profiles import (
+    MS,
+    NODES,
+    callback,
+    pipeline,
+    publishes,
+    sites,
+    steady,
+)
+
+pytestmark = pytest.mark.unit
+
+# Messages cost nothing, so that times follow from the callbacks alone.
+FREE = TARGETS["host"].changed(
+    dict.fromkeys(
+        ("wake_us", "wake_busy_us", "publish_us", "receive_us", "copy_ns_per_byte", "switch_us"), 0
+    ),
+    "chosen",
+)
+
+
+def run(profile: Profile, target: Target = FREE, **options: object) -> Prediction:
+    """Predict ten seconds of the pipeline, its nodes on CPUs of their own by default."""
+    options.setdefault("sites", sites())
+    return predict(profile=profile, target=target, duration_s=10.0, **options)
+
+
+def total_us(prediction: Prediction) -> tuple[float | None, float | None]:
+    (chain,) = prediction.chains
+    assert chain.name == "/image (/filter) > /small (/sink)"
+    return chain.quantile_us(0.5), chain.quantile_us(1.0)
+
+
+def test_a_chain_takes_what_its_callbacks_take() -> None:
+    prediction = run(pipeline())
+    assert total_us(prediction) == pytest.approx((20_000, 20_000), abs=0.1)
+    assert prediction.chains[0].row()["count"] == pytest.approx(100, abs=1)
+
+
+def test_loads_are_rates_times_cpu_times() -> None:
+    loads = {one.nodes[0]: one.cpu_share for one in run(pipeline()).cores}
+    assert loads == pytest.approx({"/camera": 0.02, "/filter": 0.3, "/sink": 0.01}, abs=0.004)
+
+
+def test_a_slower_cpu_takes_longer() -> None:
+    assert total_us(run(pipeline(), FREE.changed({"speed": 0.5}, "chosen")))[0] == pytest.approx(
+        40_000, abs=0.1
+    )
+
+
+def test_a_shared_cpu_delays() -> None:
+    """Camera and filter on one CPU: the camera runs on for 1 ms when the filter could begin."""
+    prediction = run(pipeline(), sites=sites(host_cpus=(0, 0, 1)))
+    assert total_us(prediction)[0] == pytest.approx(21_000, abs=0.1)
+
+
+def test_a_receive_thread_costs_its_time_between_clusters() -> None:
+    target = FREE.changed({"receive_us": 500.0}, "chosen")
+    prediction = run(pipeline(), target, sites=sites(1, 2, 2))
+    assert total_us(prediction)[0] == pytest.approx(20_500, abs=0.1)
+    (thread,) = prediction.receive_threads
+    assert (thread.cluster, thread.messages_per_s) == (2, pytest.approx(10, abs=0.2))
+
+
+def test_a_full_queue_loses_the_oldest() -> None:
+    """The filter takes 150 ms and keeps two of the messages that come each 100 ms."""
+    slow = callback(1, 150, trigger="/image", subscription=0, publishes=publishes(1, 150))
+    profile = pipeline()
+    profile = pipeline(callbacks=(profile.callbacks[0], slow, profile.callbacks[2]))
+    prediction = run(profile)
+    (queue,) = prediction.queues
+    assert (queue.node, queue.depth, queue.longest) == ("/filter", 2, 2)
+    assert queue.lost == pytest.approx(100 - 100 / 1.5 - 2, abs=2)
+
+
+def test_a_late_timer_skips() -> None:
+    profile = pipeline()
+    slow = callback(0, 150, kind="timer", period_ns=100 * MS, publishes=publishes(0, 1))
+    (timer,) = run(pipeline(callbacks=(slow, *profile.callbacks[1:]))).timers
+    assert (timer.node, timer.missed) == ("/camera", pytest.approx(33, abs=2))
+
+
+def test_the_same_seed_gives_the_same_run() -> None:
+    found = [run(pipeline(), seed=seed, sites=sites(1, 2, 3)) for seed in (1, 1, 2)]
+    assert found[0] == found[1] != found[2]
+
+
+def test_nodes_that_wait_for_all_inputs_publish_at_the_last() -> None:
+    """The sink publishes at the later of two inputs, once per pair."""
+    profile = pipeline()
+    inputs = [
+        callback(2, 1, trigger=topic, publishes=publishes(2, 1, count))
+        for topic, count in (("/image", 40), ("/small", 60))
+    ]
+    output = profile.publishers[0].model_copy(update={"node": 2, "topic": "/fused"})
+    reader = callback(1, 1, trigger="/fused")
+    joined = pipeline(
+        publishers=(*profile.publishers, output),
+        callbacks=(*profile.callbacks[:2], *inputs, reader),
+    )
+    counts = {one.name.split(" (")[0]: one.row()["count"] for one in run(joined).chains}
+    chains = [one for one in run(joined).chains if one.name.endswith("/fused (/filter)")]
+    assert len(chains) == 1, counts  # /small comes last, always
+    assert chains[0].row()["count"] == pytest.approx(100, abs=2)
+
+
+def test_a_profile_of_another_application_is_refused() -> None:
+    profile = pipeline(nodes=(*(Node(name=n, process=None) for n in (*NODES[:2], "/other")),))
+    with pytest.raises(ManycoreError, match="does not place /other"):
+        run(profile)
+
+
+def test_sizes_count_in_smem() -> None:
+    profile = pipeline()
+    large = [one.model_copy(update={"size_bytes": steady(5000)}) for one in profile.publishers]
+    assert run(pipeline(publishers=tuple(large))).smem_bytes == {1: 10_000}
