@@ -67,23 +67,23 @@ _SOURCES_AT = 8 * _WORDS + 8 + _GIDS * _GID_BYTES
 _ROW_BYTES = _SOURCES_AT + _SOURCES * _SOURCE.size + _REASON_BYTES
 
 
-def status_path(platform: str, direction: str, lane: int) -> Path:
-    """Return the path of a bridge process's counter file."""
-    return Path(_transport.platform_directory(platform)) / f"bridge-{direction}-{lane}"
+def status_path(platform: str, stem: str, lane: int) -> Path:
+    """Return the path of a bridge process's counter file; the stem has engine and direction."""
+    return Path(_transport.platform_directory(platform)) / f"bridge-{stem}-{lane}"
 
 
-def pattern_status_path(platform: str, route: Route, index: int, slot: int) -> Path:
+def pattern_status_path(platform: str, stem: str, lane: int, index: int, slot: int) -> Path:
     """Return the path of the counter file of the index-th topic matched by a pattern."""
-    path = status_path(platform, route.direction, route.lane)
+    path = status_path(platform, stem, lane)
     return path.with_name(f"{path.name}-{index}-{slot}")
 
 
-def take_pattern_files(platform: str, direction: str, lane: int) -> dict[RouteKey, LastNumbers]:
+def take_pattern_files(platform: str, stem: str, lane: int) -> dict[RouteKey, LastNumbers]:
     """Remove the pattern counter files of a previous process.
 
     Return the last sequence numbers it forwarded, by route.
     """
-    path = status_path(platform, direction, lane)
+    path = status_path(platform, stem, lane)
     found: dict[RouteKey, LastNumbers] = {}
     for file in path.parent.glob(f"{path.name}-*"):
         found |= _last_numbers(file)

@@ -6,13 +6,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from rmw_manycore_bridge.loop import Loop
+from rmw_manycore_bridge.outside.loop import Loop
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native._transport import EndpointInfo
 from rmw_manycore_py.native.enums import EndpointKind, EndpointRole
 from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import DIRECTIONS
 
-NODE_PREFIX = "_manycore_bridge_"  # hidden node name
+NODE_PREFIX = "_manycore_bridge_"  # hidden node name; goes on with engine, direction and lane
 
 
 class InsideReader(Protocol):
@@ -27,6 +28,7 @@ class Inside(Loop):
 
     def __init__(self, plan: Plan, core: tuple[int, int], name: str, changed: Callable[[], None]):
         super().__init__("inside")
+        self._own = tuple(NODE_PREFIX + plan.outside.stem(way) for way in DIRECTIONS)
         cluster, core_number = core
         self.process = _transport.Process(plan.platform, cluster, core_number, name)
         self.process.watch_graph()
@@ -47,7 +49,7 @@ class Inside(Loop):
         """Return the types published by others than the bridge, by topic name."""
         found: dict[str, set[str]] = {}
         for endpoint in self._view.endpoints():
-            if _is_of_others(endpoint, "topic", "publisher") and wanted(endpoint.topic):
+            if self._is_of_others(endpoint, "topic", "publisher") and wanted(endpoint.topic):
                 found.setdefault(endpoint.topic, set()).add(endpoint.type)
         return {name: frozenset(types) for name, types in found.items()}
 
@@ -59,8 +61,12 @@ class Inside(Loop):
         return [
             endpoint
             for endpoint in self.process.endpoints_of(name)
-            if _is_of_others(endpoint, role, kind)
+            if self._is_of_others(endpoint, role, kind)
         ]
+
+    def _is_of_others(self, endpoint: EndpointInfo, role: EndpointRole, kind: EndpointKind) -> bool:
+        is_own = endpoint.node_name.startswith(self._own)
+        return (endpoint.role, endpoint.kind) == (role, kind) and not is_own
 
     def wake(self) -> None:
         """Interrupt the current or next wait. Thread-safe."""
@@ -86,8 +92,3 @@ class Inside(Loop):
         self.readers.clear()
         self._view.close()
         self.process.close()
-
-
-def _is_of_others(endpoint: EndpointInfo, role: EndpointRole, kind: EndpointKind) -> bool:
-    of_bridge = endpoint.node_name.startswith(NODE_PREFIX)
-    return (endpoint.role, endpoint.kind) == (role, kind) and not of_bridge

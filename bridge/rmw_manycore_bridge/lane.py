@@ -25,9 +25,10 @@ class Lanes:
 
     def __init__(self, plan: Plan, direction: Direction, lane: int) -> None:
         self._plan, self._direction, self._lane = plan, direction, lane
+        self._stem = plan.outside.stem(direction)
         lanes = plan.lanes(direction)
         self.period_s = PERIOD_S if lanes > 1 else None
-        self._table = LaneTable.of(plan.platform, direction) if lanes > 1 else None
+        self._table = LaneTable.of(plan.platform, self._stem) if lanes > 1 else None
         if self._table is not None:
             self._table.join(plan.topics(direction), lane)
         self._balance = Balance()
@@ -61,7 +62,7 @@ class Lanes:
             if table.shares[self._move.index].owner != self._move.heir:
                 self._rests_until_s[self._move.index] = time.monotonic() + REST_S
             self._move = None
-        found = topic_loads(self._plan.platform, self._direction)
+        found = topic_loads(self._plan.platform, self._stem)
         move = self._balance.look(self._loads(table, found), found)
         if move is not None:
             self._move = move

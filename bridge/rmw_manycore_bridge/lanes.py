@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from rmw_manycore_py.native import _transport
-from rmw_manycore_py.routes.route import Direction, Route
+from rmw_manycore_py.routes.route import Route
 
 
 @dataclass
@@ -52,10 +52,10 @@ class LaneTable:
         self._shares: list[Share] = []
 
     @classmethod
-    def of(cls, platform: str, direction: Direction) -> LaneTable:
-        """Return the table of a platform's bridge; its file may be missing."""
+    def of(cls, platform: str, stem: str) -> LaneTable:
+        """Return the table of an engine and direction; its file may be missing."""
         directory = Path(_transport.platform_directory(platform))
-        return cls(directory / f"lanes-{direction}")
+        return cls(directory / f"lanes-{stem}")
 
     def join(self, routes: Sequence[Route], lane: int) -> None:
         """Create the file unless it exists for these routes, and abort this lane's moves."""

@@ -15,7 +15,7 @@ from rmw_manycore_bridge.counters import (
     key_of,
     pattern_status_path,
 )
-from rmw_manycore_bridge.loop import Mover
+from rmw_manycore_bridge.outside.loop import Mover
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_py.ros.patterns import matches
 from rmw_manycore_py.routes.plan import Plan
@@ -165,4 +165,5 @@ class Pattern(Mover):
     def _path(self, slot: int) -> Path:
         route = self._sides.route
         index = self._plan.patterns(route.direction).index(route)
-        return pattern_status_path(self._plan.platform, route, index, slot)
+        stem = self._plan.outside.stem(route.direction)
+        return pattern_status_path(self._plan.platform, stem, route.lane, index, slot)

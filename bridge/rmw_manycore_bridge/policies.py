@@ -5,15 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from rclpy.duration import Duration, Infinite
-from rclpy.qos import (
-    DurabilityPolicy,
-    HistoryPolicy,
-    LivelinessPolicy,
-    QoSProfile,
-    ReliabilityPolicy,
-)
-
 from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.ros.qos import Policies, policies_of
 
@@ -64,6 +55,11 @@ def request_for(offer: Qos, depth: int) -> Qos:
     return replaced(offer, {"history": "keep_last", "depth": kept, "lifespan_ns": None})
 
 
+def service_qos() -> Qos:
+    """Return the QoS of services in ROS 2."""
+    return Qos(reliability="reliable", durability="volatile", history="keep_last", depth=10)
+
+
 def replaced(qos: Qos, changes: Policies) -> Qos:
     """Return the QoS with some policies replaced."""
     policies = policies_of(qos)
@@ -74,53 +70,6 @@ def replaced(qos: Qos, changes: Policies) -> Qos:
 def _longest(durations_ns: Iterable[int | None]) -> int | None:
     known = list(durations_ns)
     return None if None in known or not known else max(d for d in known if d is not None)
-
-
-def from_rclpy(profile: QoSProfile) -> Qos:
-    """Convert the QoS of a DDS publisher.
-
-    DDS discovery does not carry the history depth of a publisher: assume one message.
-    """
-    reliable = profile.reliability == ReliabilityPolicy.RELIABLE
-    kept = profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
-    by_hand = profile.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC
-    return Qos(
-        reliability="reliable" if reliable else "best_effort",
-        durability="transient_local" if kept else "volatile",
-        history="keep_last",
-        depth=max(profile.depth, 1),
-        deadline_ns=_ns(profile.deadline),
-        lifespan_ns=_ns(profile.lifespan),
-        liveliness="manual_by_topic" if by_hand else "automatic",
-        liveliness_lease_ns=_ns(profile.liveliness_lease_duration),
-    )
-
-
-def to_rclpy(qos: Qos) -> QoSProfile:
-    """Convert to the rclpy QoS of a DDS endpoint."""
-    reliable = qos.reliability == "reliable"
-    kept = qos.durability == "transient_local"
-    by_hand = qos.liveliness == "manual_by_topic"
-    return QoSProfile(
-        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if kept else DurabilityPolicy.VOLATILE,
-        history=HistoryPolicy.KEEP_ALL if qos.history == "keep_all" else HistoryPolicy.KEEP_LAST,
-        depth=qos.depth,
-        deadline=_duration(qos.deadline_ns),
-        lifespan=_duration(qos.lifespan_ns),
-        liveliness=LivelinessPolicy.MANUAL_BY_TOPIC if by_hand else LivelinessPolicy.AUTOMATIC,
-        liveliness_lease_duration=_duration(qos.liveliness_lease_ns),
-    )
-
-
-def _ns(duration: Duration) -> int | None:
-    """Return nanoseconds; None for zero and for the longest duration, which both mean no limit."""
-    ns = int(duration.nanoseconds)
-    return None if ns == 0 or ns >= int(Infinite.nanoseconds) else ns
-
-
-def _duration(ns: int | None) -> Duration:
-    return Infinite if ns is None else Duration(nanoseconds=ns)
 
 
 def satisfies(present: Qos, wanted: Qos) -> bool:

@@ -11,14 +11,13 @@ import socket
 import sys
 from collections.abc import Iterable
 from functools import partial
-from pathlib import Path
 
 from rmw_manycore_bridge.counters import CounterFile, status_path, take_pattern_files
+from rmw_manycore_bridge.engines import load_engine
 from rmw_manycore_bridge.inside import NODE_PREFIX, Inside
 from rmw_manycore_bridge.lane import Lanes
-from rmw_manycore_bridge.loop import Loop, Mover
-from rmw_manycore_bridge.network import has_interface
-from rmw_manycore_bridge.outside import Outside
+from rmw_manycore_bridge.outside.interface import Outside
+from rmw_manycore_bridge.outside.loop import Loop, Mover
 from rmw_manycore_bridge.pattern import Pattern
 from rmw_manycore_bridge.place import Place
 from rmw_manycore_bridge.service_inward import InwardService
@@ -26,13 +25,10 @@ from rmw_manycore_bridge.service_outward import OutwardService
 from rmw_manycore_bridge.sides import OwnPublishers, Sides
 from rmw_manycore_bridge.topic_inward import InwardTopic
 from rmw_manycore_bridge.topic_outward import OutwardTopic
-from rmw_manycore_bridge.transports import NOTICE, avoid_shared_memory
 from rmw_manycore_py.process.readiness import report_ready
 from rmw_manycore_py.process.signals import signal_inbox
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import Direction
-
-_NO_NETWORK = "no network interface is up: nothing is bridged; run 'ip link set lo up' and restart"
 
 
 class BridgeProcess:
@@ -42,20 +38,20 @@ class BridgeProcess:
         services = [route for route in plan.of(direction, lane) if route.kind == "service"]
         patterns = [route for route in plan.of(direction, lane) if route.is_pattern]
         routes = [*plan.topics(direction), *services, *patterns]
-        name = f"{node_stem(plan.platform)}_{direction}{lane or ''}"
+        stem = plan.outside.stem(direction)
+        node_name = f"{node_stem(plan.platform)}_{direction}{lane or ''}"
         self._plan = plan
         self._failed = os.eventfd(0)  # readable after a thread has failed
-        self._inside = Inside(
-            plan, core, f"{NODE_PREFIX}{direction}{lane or ''}", self._graphs_changed
-        )
-        self._before = take_pattern_files(plan.platform, direction, lane)
-        path = status_path(plan.platform, direction, lane)
-        if direction == "inward" and path.exists():
-            _listen_over_udp(path.with_name(f"profile-{direction}-{lane}.xml"))
+        self._inside = Inside(plan, core, f"{NODE_PREFIX}{stem}{lane or ''}", self._graphs_changed)
+        self._before = take_pattern_files(plan.platform, stem, lane)
+        path = status_path(plan.platform, stem, lane)
+        engine = load_engine(plan.outside.engine)
+        is_later = direction == "inward" and path.exists()
+        engine.prepare(path.with_name(f"profile-{stem}-{lane}.xml"), is_later)
         counters = CounterFile.create(path, routes)
-        own = OwnPublishers(plan.platform)
+        own = OwnPublishers(plan)
         self._outsides = {
-            domain: Outside(domain, name, self._graphs_changed, own.is_noted)
+            domain: engine.open(plan.outside, domain, node_name, self._graphs_changed, own.is_noted)
             for domain in sorted({route.domain for route in routes})
         }
         self._loops: list[Loop] = [self._inside, *self._outsides.values()]
@@ -96,8 +92,6 @@ class BridgeProcess:
     def run(self) -> int:
         """Forward messages until a signal; return the exit status."""
         with signal_inbox() as inbox:
-            if not has_interface():
-                print(_NO_NETWORK, file=sys.stderr, flush=True)
             for loop in self._loops:
                 loop.on_failure(partial(os.eventfd_write, self._failed, 1))
                 loop.start()
@@ -116,11 +110,6 @@ class BridgeProcess:
                 loop.close()
             os.close(self._failed)
             return _report(self._loops)
-
-
-def _listen_over_udp(profile: Path) -> None:
-    if avoid_shared_memory(os.environ, profile):
-        print(NOTICE, file=sys.stderr, flush=True)
 
 
 def _report(loops: Iterable[Loop]) -> int:

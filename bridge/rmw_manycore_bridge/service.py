@@ -9,26 +9,23 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from rclpy.qos import qos_profile_services_default
-
-from rmw_manycore_bridge import types
-from rmw_manycore_bridge.loop import Mover
+from rmw_manycore_bridge.outside import types
+from rmw_manycore_bridge.outside.loop import Mover
 from rmw_manycore_bridge.pending import Asked, Pending, empty_answer
-from rmw_manycore_bridge.policies import from_rclpy, replaced
+from rmw_manycore_bridge.policies import replaced, service_qos
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native.enums import EndpointRole
 
 
 class Service(Mover):
-    """Runs in the thread of its DDS domain; replies from the platform in the platform's thread."""
+    """Runs in the thread of the outside; replies from the platform in the platform's thread."""
 
     def __init__(self, sides: Sides) -> None:
         super().__init__(sides.fail)
         self._sides = sides
-        self._type = types.load(sides.route.type)
+        sides.outside.require_type(sides.route.type)
         self._hash = types.hash_of(sides.route.type)
-        self._qos = from_rclpy(qos_profile_services_default)
         self._pending = Pending(sides.route.timeout_s)
 
     @property
@@ -45,21 +42,21 @@ class Service(Mover):
 
     def _publisher(self, role: EndpointRole) -> _transport.Publisher:
         route, process = self._sides.route, self._sides.inside.process
-        return process.publisher(route.inside, route.type, self._qos, role, self._hash)
+        return process.publisher(route.inside, route.type, service_qos(), role, self._hash)
 
     def _subscription(self, role: EndpointRole) -> _transport.Subscription:
         """Return a subscription that never overwrites unread messages (KEEP_ALL)."""
         route, process = self._sides.route, self._sides.inside.process
-        qos = replaced(self._qos, {"history": "keep_all"})
+        qos = replaced(service_qos(), {"history": "keep_all"})
         return process.subscription(route.inside, route.type, qos, role, self._hash)
 
     @abstractmethod
-    def _reply(self, caller: Any, response: Any) -> None:
+    def _reply(self, caller: Any, data: bytes) -> None:
         """Send a response to the caller."""
 
-    def _answer(self, asked: Asked, response: Any, size: int) -> None:
-        self._reply(asked.caller, response)
-        self._sides.row.passed(size, time.time_ns() - asked.since_ns)
+    def _answer(self, asked: Asked, data: bytes) -> None:
+        self._reply(asked.caller, data)
+        self._sides.row.passed(len(data), time.time_ns() - asked.since_ns)
 
     @contextmanager
     def _one_request(self, caller: Any = None) -> Iterator[None]:
@@ -96,6 +93,6 @@ class Service(Mover):
 
     def _answer_empty(self, caller: Any, reason: str) -> None:
         try:
-            self._reply(caller, empty_answer(self._type.Response, f"bridge: {reason}"))
+            self._reply(caller, empty_answer(self._sides.route.type, f"bridge: {reason}"))
         except Exception as error:  # the caller may have ended; the request is counted
             self._sides.say(f"cannot answer a caller: {error}")

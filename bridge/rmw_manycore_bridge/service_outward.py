@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Service with its server in DDS, called from the platform."""
+"""Service with its server outside, called from the platform."""
 
 from __future__ import annotations
 
@@ -7,10 +7,8 @@ import threading
 import time
 from collections.abc import Iterator
 from functools import partial
-from typing import Any
 
-from rclpy.serialization import deserialize_message, serialize_message
-
+from rmw_manycore_bridge.outside.interface import Answer
 from rmw_manycore_bridge.service import Service
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_py.native import _transport
@@ -25,9 +23,7 @@ Caller = tuple[bytes, int]  # client gid, sequence number of the request
 
 
 class OutwardService(Service):
-    """Server on the platform -> DDS client."""
-
-    kind = "client"
+    """Server on the platform -> client outside."""
 
     def __init__(self, sides: Sides) -> None:
         super().__init__(sides)
@@ -37,13 +33,13 @@ class OutwardService(Service):
         self._claiming = threading.Lock()
         self._requests: _transport.Subscription | None = None
         self._replies: _transport.Publisher | None = None
-        self.entity = sides.outside.node.create_client(self._type, sides.route.outside)
-        sides.outside.readers.append(self)
+        self._client = sides.outside.call(sides.route)
+        sides.outside.readers[self._client] = self.pump_outside
 
     def reconcile(self) -> None:
-        """Offer the service on the platform while a server exists in DDS."""
+        """Offer the service on the platform while a server exists outside."""
         self._look_s = _NEVER_S
-        if not self.entity.service_is_ready():
+        if not self._client.is_ready():
             self._leave_platform()
             self._look_for_server()
             return
@@ -87,8 +83,7 @@ class OutwardService(Service):
         with self._claiming:
             for caller, data in self._claimed_requests():
                 with self._one_request(caller):
-                    request = deserialize_message(data, self._type.Request)
-                    self._pending.ask(caller, partial(self.entity.handle.send_request, request))
+                    self._pending.ask(caller, partial(self._client.send, data))
                 self._sides.outside.wake()  # its deadline has changed
 
     def _claimed_requests(self) -> Iterator[tuple[Caller, bytes]]:
@@ -103,21 +98,25 @@ class OutwardService(Service):
     def pump_outside(self) -> None:
         """Return a reply."""
         with self._one_request():
-            header, response = self.entity.handle.take_response(self._type.Response)
-            if response is not None:
-                self._return(header.request_id.sequence_number, response)
+            answer = self._client.take()
+            if answer is not None:
+                self._return(answer)
 
-    def _return(self, number: int, response: Any) -> None:
-        asked = self._pending.answered(number)
-        if asked is not None:
-            with self._one_request(asked.caller):
-                self._answer(asked, response, len(serialize_message(response)))
+    def _return(self, answer: Answer) -> None:
+        asked = self._pending.answered(answer.number)
+        if asked is None:
+            return
+        if answer.data is None:
+            self._give_up(asked.caller, "unanswered", answer.reason)
+            return
+        with self._one_request(asked.caller):
+            self._answer(asked, answer.data)
 
-    def _reply(self, caller: Caller, response: Any) -> None:
+    def _reply(self, caller: Caller, data: bytes) -> None:
         replies = self._replies
         if replies is not None:
             client, number = caller
-            replies.publish(serialize_message(response), client=client, number=number)
+            replies.publish(data, client=client, number=number)
 
     def _leave_platform(self) -> None:
         """Answer all callers, then leave atomically: no request may arrive in between."""
@@ -133,5 +132,5 @@ class OutwardService(Service):
     def close(self) -> None:
         """Leave both sides, after answering pending requests."""
         self._leave_platform()
-        self._sides.outside.readers.remove(self)
-        self._sides.outside.node.destroy_client(self.entity)
+        del self._sides.outside.readers[self._client]
+        self._client.close()

@@ -9,16 +9,18 @@ from pathlib import Path
 
 from rmw_manycore_bridge.counters import CounterFile, Row
 from rmw_manycore_bridge.inside import Inside
-from rmw_manycore_bridge.outside import Outside
+from rmw_manycore_bridge.outside.interface import Outside
 from rmw_manycore_py.native import _transport
-from rmw_manycore_py.routes.route import Route
+from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import DIRECTIONS, Route
 
 
 class OwnPublishers:
     """Looks up publishers of all processes of this bridge by gid, in their counter files."""
 
-    def __init__(self, platform: str) -> None:
-        self._directory = Path(_transport.platform_directory(platform))
+    def __init__(self, plan: Plan) -> None:
+        self._directory = Path(_transport.platform_directory(plan.platform))
+        self._stems = [plan.outside.stem(direction) for direction in DIRECTIONS]
         self._known: dict[bytes, bool] = {}
 
     def has(self, gid: bytes) -> bool:
@@ -30,7 +32,8 @@ class OwnPublishers:
 
     def is_noted(self, gid: bytes) -> bool:
         """Return whether a process has registered a publisher yet."""
-        files = (CounterFile.open(path) for path in self._directory.glob("bridge-*"))
+        paths = (path for s in self._stems for path in self._directory.glob(f"bridge-{s}-*"))
+        files = (CounterFile.open(path) for path in paths)
         return any(row.has_gid(gid) for file in files if file for row in file.rows)
 
 

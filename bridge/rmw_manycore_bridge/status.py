@@ -13,23 +13,27 @@ from rmw_manycore_bridge.datagrams import receive_buffer_errors, socket_drops
 from rmw_manycore_bridge.lanes import LaneTable, name_of
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.platform.topology import HostCpu, as_host_cpu
-from rmw_manycore_py.routes.route import DIRECTIONS, Direction
+from rmw_manycore_py.routes.outside import engine_of
 
 _OF_OWNER = ("state", "latched", "latency_max_ns")
 _INTERNAL = ("latency_ns", "load_ppm", "window_ns", "window_busy_ns")
-_DASHES = 2  # in bridge-<direction>-<lane>
-_Key = tuple[str, str, str, str, int]
+_STEM, _LANE = 1, 2  # parts of bridge-<stem>-<lane>
+_DASHES = 2
+_Key = tuple[Any, ...]
 
 
 def status(platform: str) -> list[dict[str, Any]]:
     """Return a row per route of a platform's bridge, summed over lanes."""
-    owners = {way: LaneTable.of(platform, way).owners() for way in DIRECTIONS}
+    owners: dict[str, dict[str, int]] = {}
     merged: dict[_Key, dict[str, Any]] = {}
     for row in _rows(platform):
-        key = (row["kind"], row["direction"], row["inside"], row["outside"], row["domain"])
-        lane = row["lane"]
+        names = ("engine", "kind", "direction", "inside", "outside", "domain")
+        key = tuple(row[name] for name in names)
+        lane, stem = row["lane"], row.pop("stem")
         if row["kind"] == "topic":
-            lane = owners[row["direction"]].get(name_of(row), lane)
+            if stem not in owners:
+                owners[stem] = LaneTable.of(platform, stem).owners()
+            lane = owners[stem].get(name_of(row), lane)
         is_owner = row.pop("process_lane") == lane
         row["lane"] = lane
         merged[key] = _sum(merged[key], row, is_owner) if key in merged else row
@@ -41,10 +45,10 @@ def status(platform: str) -> list[dict[str, Any]]:
     return list(merged.values())
 
 
-def topic_loads(platform: str, direction: Direction) -> dict[int, list[tuple[float, bool]]]:
+def topic_loads(platform: str, stem: str) -> dict[int, list[tuple[float, bool]]]:
     """Return by lane the CPU usage of each topic and whether it may move."""
     found = {}
-    for path in _files(platform, f"bridge-{direction}-*"):
+    for path in _files(platform, f"bridge-{stem}-*"):
         if path.name.count("-") > _DASHES:  # topics of patterns do not move
             continue
         counters = CounterFile.open(path)
@@ -59,7 +63,10 @@ def _rows(platform: str) -> Iterator[dict[str, Any]]:
         counters = CounterFile.open(path)
         if counters is None:
             continue
+        stem = path.name.split("-")[_STEM]
         process = {
+            "stem": stem,
+            "engine": engine_of(stem),
             "process_lane": _lane_of(path),
             "pid": counters.pid,
             "alive": is_locked(path),
@@ -72,7 +79,7 @@ def _rows(platform: str) -> Iterator[dict[str, Any]]:
 
 
 def _lane_of(path: Path) -> int:
-    return int(path.name.split("-")[_DASHES])
+    return int(path.name.split("-")[_LANE])
 
 
 def _host_cpu(pid: int) -> HostCpu:

@@ -7,12 +7,10 @@ import ctypes
 import time
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import Any
 
-from rmw_manycore_bridge import types
 from rmw_manycore_bridge.lanes import Share
 from rmw_manycore_bridge.limits import Limits
-from rmw_manycore_bridge.loop import Mover
+from rmw_manycore_bridge.outside.loop import Mover
 from rmw_manycore_bridge.place import SETTLE_S, STEP_S, Held, Place
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_py.native import _transport
@@ -31,7 +29,7 @@ class Topic(Mover):
     def __init__(self, sides: Sides, place: Place) -> None:
         super().__init__(sides.fail)
         self._sides, self._place = sides, place
-        self._type: Any = types.load(sides.route.type)
+        sides.outside.require_type(sides.route.type)
         self._limits = Limits(sides.route)
         self._offer: Qos | None = None
         self._depth = 0  # of the subscription, the maximum number of unread messages

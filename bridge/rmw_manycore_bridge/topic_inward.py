@@ -1,26 +1,16 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Inward topic: DDS subscription -> publisher on the platform."""
+"""Inward topic: subscription outside -> publisher on the platform."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from typing import Any
 
-from rclpy.event_handler import SubscriptionEventCallbacks
-
-from rmw_manycore_bridge import types
 from rmw_manycore_bridge.limits import Gaps
+from rmw_manycore_bridge.outside import types
+from rmw_manycore_bridge.outside.interface import Subscription
 from rmw_manycore_bridge.place import Place
-from rmw_manycore_bridge.policies import (
-    common_offer,
-    from_rclpy,
-    request_for,
-    satisfies,
-    to_rclpy,
-    unmet,
-)
-from rmw_manycore_bridge.rcl import RawReader
+from rmw_manycore_bridge.policies import common_offer, request_for, satisfies, unmet
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_bridge.topic import BATCH, Topic
 from rmw_manycore_py.native import _transport
@@ -28,30 +18,28 @@ from rmw_manycore_py.native._transport import Qos
 
 
 class InwardTopic(Topic):
-    """Runs in the thread of its DDS domain."""
-
-    kind = "subscription"
+    """Runs in the thread of the outside."""
 
     def __init__(self, sides: Sides, place: Place) -> None:
         super().__init__(sides, place)
         self._publisher: _transport.Publisher | None = None
-        self.entity: Any = None  # the DDS subscription
-        self._reader: RawReader | None = None
+        self._subscription: Subscription | None = None
         self._gaps = Gaps(sides.row)
 
     def match(self) -> None:
-        """Publish inside while DDS publishers exist; subscribe to DDS while subscriptions exist."""
-        route, outside = self._sides.route, self._sides.outside
-        publishers = outside.publishers(route.outside)
-        fitting = [p for p in publishers if p.topic_type == route.type]
+        """Publish inside while publishers exist outside; subscribe there while others do inside."""
+        route = self._sides.route
+        listeners = self._sides.inside.subscriptions(route.inside)
+        publishers = self._sides.outside.publishers(route, bool(listeners) or route.eager)
+        fitting = [p for p in publishers if p.type == route.type]
         if not fitting:
             self.finish()
             if publishers:
-                self._sides.fail(f"is {publishers[0].topic_type} outside, not {route.type}")
+                self._sides.fail(f"is {publishers[0].type} outside, not {route.type}")
             else:
                 self._sides.row.set_state("waiting")
             return
-        offers = [from_rclpy(p.qos_profile) for p in fitting]
+        offers = [p.qos for p in fitting]
         if reason := unmet(offers, route.qos):
             self.finish()
             self._sides.fail(reason)
@@ -61,12 +49,11 @@ class InwardTopic(Topic):
             self.finish()
             if not self._appear(offer):
                 return
-        listeners = self._sides.inside.subscriptions(route.inside)
         if listeners or route.eager or offer.durability == "transient_local":
             self._listen(max((e.qos.depth for e in listeners), default=1))
         else:
             self.stop_listening()
-        self._sides.row.set_state("ready" if self.entity is None else "forwarding")
+        self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
     def _appear(self, offer: Qos) -> bool:
         route = self._sides.route
@@ -82,31 +69,21 @@ class InwardTopic(Topic):
         return True
 
     def _listen(self, depth: int) -> None:
-        if self.entity is not None:
+        if self._subscription is not None:
             return
         assert self._offer is not None
         request = request_for(self._offer, depth)
-        self.entity = self._sides.outside.node.create_subscription(
-            self._type,
-            self._sides.route.outside,
-            never_called,
-            to_rclpy(request),
-            raw=True,
-            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
-        )
-        self._reader = RawReader(self.entity)
+        self._subscription = self._sides.outside.subscribe(self._sides.route, request)
         self._depth, self._gaps = request.depth, Gaps(self._sides.row)
-        self._sides.outside.readers.append(self)
+        self.resume()
 
     def stop_listening(self) -> None:
         """Destroy the subscription."""
-        if self.entity is None or self._reader is None:
+        if self._subscription is None:
             return
-        if self in self._sides.outside.readers:
-            self._sides.outside.readers.remove(self)
-        self._reader.close()
-        self._sides.outside.node.destroy_subscription(self.entity)
-        self.entity = self._reader = None
+        self.pause()
+        self._subscription.close()
+        self._subscription = None
 
     def pump_outside(self) -> None:
         """Forward messages that have arrived."""
@@ -116,16 +93,14 @@ class InwardTopic(Topic):
 
     def take(self, limit: int) -> None:
         """Take up to `limit` messages."""
-        reader = self._reader
+        taken = self._subscription
         for _ in range(limit):
-            if reader is None or not reader.take():
+            if taken is None or not taken.take():
                 return
-            info = reader.info
-            number, sent_ns = info.publication_sequence_number, info.source_timestamp
-            self.arrived(info.publisher, number, reader.address, reader.size, sent_ns)
+            self.arrived(taken.publisher, taken.number, taken.address, taken.size, taken.sent_ns)
 
     def send(self, address: int, size: int, sent_ns: int) -> None:
-        """Publish inside with the source timestamp of the DDS publisher."""
+        """Publish inside with the source timestamp of the publisher outside."""
         assert self._publisher is not None
         self._publisher.publish_from(address, size, sent_ns)
 
@@ -134,22 +109,21 @@ class InwardTopic(Topic):
         self._gaps.begin_after(last)
 
     def count_gap(self, publisher: bytes, number: int) -> None:
-        """Count messages that DDS did not deliver."""
+        """Count messages that did not arrive."""
         self._gaps.note(publisher, number)
 
     def pause(self) -> None:
         """Stop taking messages."""
-        if self in self._sides.outside.readers:
-            self._sides.outside.readers.remove(self)
+        self._sides.outside.readers.pop(self._subscription, None)
 
     def resume(self) -> None:
         """Resume after a pause."""
-        if self.entity is not None:
-            self._sides.outside.readers.append(self)
+        if self._subscription is not None:
+            self._sides.outside.readers[self._subscription] = self.pump_outside
 
     def matched_outside(self) -> int:
-        """Return the number of DDS publishers that the subscription is matched with."""
-        return 0 if self.entity is None else int(self.entity.get_publisher_count())
+        """Return the number of publishers outside that the subscription is matched with."""
+        return 0 if self._subscription is None else self._subscription.matched()
 
     def is_acknowledged(self) -> bool:
         """Return True: on the platform, readers have a message as soon as it is published."""
@@ -159,7 +133,3 @@ class InwardTopic(Topic):
         """Leave both sides."""
         self.stop_listening()
         self._publisher = self._offer = None
-
-
-def never_called(*_: Any) -> None:
-    """Serve as the callback rclpy requires; the bridge takes messages itself."""

@@ -1,24 +1,14 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Outward topic: subscription on the platform -> DDS publisher."""
+"""Outward topic: subscription on the platform -> publisher outside."""
 
 from __future__ import annotations
 
 import time
-from typing import Any
 
-from rclpy.duration import Duration
-from rclpy.event_handler import PublisherEventCallbacks
-
-from rmw_manycore_bridge import types
+from rmw_manycore_bridge.outside import types
+from rmw_manycore_bridge.outside.interface import Publisher
 from rmw_manycore_bridge.place import STEP_S, Place
-from rmw_manycore_bridge.policies import (
-    common_offer,
-    request_for,
-    satisfies,
-    to_rclpy,
-    unmet,
-)
-from rmw_manycore_bridge.rcl import RawWriter
+from rmw_manycore_bridge.policies import common_offer, request_for, satisfies, unmet
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_bridge.topic import BATCH, Topic
 from rmw_manycore_py.native import _transport
@@ -30,13 +20,12 @@ class OutwardTopic(Topic):
 
     def __init__(self, sides: Sides, place: Place) -> None:
         super().__init__(sides, place)
-        self._publisher: Any = None
-        self._writer: RawWriter | None = None
+        self._publisher: Publisher | None = None
         self._subscription: _transport.Subscription | None = None
         self._lost = 0
 
     def match(self) -> None:
-        """Publish to DDS while publishers exist; subscribe inside while DDS subscriptions exist."""
+        """Publish outside while publishers exist; subscribe inside while others do outside."""
         route, inside = self._sides.route, self._sides.inside
         publishers = inside.publishers(route.inside)
         fitting = [p for p in publishers if p.type == route.type]
@@ -63,13 +52,14 @@ class OutwardTopic(Topic):
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
     def _is_wanted(self, offer: Qos) -> bool:
-        route, kept = self._sides.route, offer.durability == "transient_local"
-        return kept or route.eager or bool(self._sides.outside.subscriptions(route.outside))
+        kept = offer.durability == "transient_local"
+        assert self._publisher is not None
+        return kept or self._sides.route.eager or self._publisher.has_listeners()
 
     def _leave(self) -> None:
         """Forward unread messages and wait for slow subscribers, which would lose them otherwise.
 
-        DDS itself gives up on subscribers that have ended or are stopped.
+        The engine itself gives up on subscribers that have ended or are stopped.
         """
         self.take(self._depth)
         self.stop_listening()
@@ -79,14 +69,8 @@ class OutwardTopic(Topic):
             self.due_s = time.monotonic() + STEP_S
 
     def _appear(self, offer: Qos) -> None:
-        self._publisher = self._sides.outside.node.create_publisher(
-            self._type,
-            self._sides.route.outside,
-            to_rclpy(offer),
-            event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
-        )
-        self._writer = RawWriter(self._publisher)
-        self._sides.row.add_gid(self._writer.gid)
+        self._publisher = self._sides.outside.publish(self._sides.route, offer)
+        self._sides.row.add_gid(self._publisher.gid)
         self._offer = offer
 
     def _listen(self) -> None:
@@ -131,10 +115,10 @@ class OutwardTopic(Topic):
                 claim.release()
         self._sides.inside.wake()  # continue after the other routes
 
-    def send(self, address: int, size: int, _: int) -> None:
-        """Publish to DDS; rmw sets the source timestamp to now."""
-        assert self._writer is not None
-        self._writer.publish(address, size)
+    def send(self, address: int, size: int, sent_ns: int) -> None:
+        """Publish outside."""
+        assert self._publisher is not None
+        self._publisher.publish(address, size, sent_ns)
         if self._subscription is not None:
             self._subscription.note_bridged()
 
@@ -155,16 +139,16 @@ class OutwardTopic(Topic):
             self._sides.inside.readers.append(self)
 
     def matched_outside(self) -> int:
-        """Return the number of DDS subscriptions that the publisher is matched with."""
-        return 0 if self._publisher is None else int(self._publisher.get_subscription_count())
+        """Return the number of subscriptions outside that the publisher is matched with."""
+        return 0 if self._publisher is None else self._publisher.matched()
 
     def is_acknowledged(self) -> bool:
         """Return whether every reliable subscriber has acknowledged everything."""
-        return bool(self._publisher.wait_for_all_acked(Duration(seconds=0)))
+        return self._publisher is None or self._publisher.is_acknowledged()
 
     def close(self) -> None:
         """Leave both sides."""
         self.stop_listening()
         if self._publisher is not None:
-            self._sides.outside.node.destroy_publisher(self._publisher)
-        self._publisher = self._writer = self._offer = None
+            self._publisher.close()
+        self._publisher = self._offer = None

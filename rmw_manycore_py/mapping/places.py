@@ -12,7 +12,7 @@ from rmw_manycore_py.ros.domain import is_elsewhere
 from rmw_manycore_py.ros.names import full_node_name
 from rmw_manycore_py.routes.route import Direction
 
-_BRIDGE = "/_manycore_bridge_"  # its nodes go on with the direction
+_BRIDGE = "/_manycore_bridge_"  # its nodes go on with the engine and the direction
 
 
 class Places:
@@ -30,7 +30,7 @@ class Places:
     def core(self, node: str) -> Core | None:
         """Return the core of a node or of the bridge."""
         if self._bridge is not None and node.startswith(_BRIDGE):
-            is_inward = node.removeprefix(_BRIDGE).startswith("inward")
+            is_inward = "inward" in node.removeprefix(_BRIDGE)
             return self._bridge.core("inward" if is_inward else "outward", 0)
         return self.cores.get(node)
 

@@ -4,17 +4,19 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 
+from rmw_manycore_py.routes.outside import OutsideSettings
 from rmw_manycore_py.routes.route import Direction, Route
 
 
 @dataclass(frozen=True)
 class Plan:
-    """All routes of a platform's bridge. Lanes are pairs of processes, numbered from 0."""
+    """All routes of one bridge of a platform. Lanes are pairs of processes, numbered from 0."""
 
     platform: str
     routes: tuple[Route, ...]
+    outside: OutsideSettings = field(default_factory=OutsideSettings)
 
     def of(self, direction: Direction, lane: int) -> tuple[Route, ...]:
         """Return the initial routes of one process."""
@@ -44,4 +46,6 @@ class Plan:
         """Parse the output of `to_json`."""
         data = json.loads(text)
         routes = tuple(Route(**route) for route in data.pop("routes"))
-        return cls(routes=routes, **data)
+        outside = data.pop("outside")
+        connect = tuple(outside.pop("connect"))
+        return cls(routes=routes, outside=OutsideSettings(connect=connect, **outside), **data)

@@ -20,7 +20,7 @@ pytestmark = [
 def change_while_looking(platform: str) -> None:
     """Notify a loop of a change while it reads the graphs; return whether it reads them again."""
     from rmw_manycore_bridge.inside import Inside
-    from rmw_manycore_bridge.loop import Mover
+    from rmw_manycore_bridge.outside.loop import Mover
     from rmw_manycore_py.routes.plan import Plan
 
     class Looker(Mover):

@@ -98,7 +98,7 @@ def ask_nonsense(platform: str) -> None:
     """Send one byte, which is no request of any type, and print the size of the response."""
     from rclpy.qos import qos_profile_services_default
 
-    from rmw_manycore_bridge.policies import from_rclpy
+    from rmw_manycore_bridge.fastdds.policies import from_rclpy
 
     with _transport.Process(platform) as process:
         endpoint = ("/camera", SET_CAMERA, from_rclpy(qos_profile_services_default))

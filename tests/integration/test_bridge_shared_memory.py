@@ -17,7 +17,7 @@ import sys
 import pytest
 from std_msgs.msg import UInt8MultiArray
 
-from rmw_manycore_bridge.transports import NOTICE, PROFILES, TRANSPORTS, avoid_shared_memory
+from rmw_manycore_bridge.fastdds.transports import NOTICE, PROFILES, TRANSPORTS, avoid_shared_memory
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import arranged
 from support import IS_MANYCORE

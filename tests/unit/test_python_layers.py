@@ -85,6 +85,7 @@ INNER_LAYERS = {
     ".platform": [("",), (".monitor",)],
     ".recording": [("",), (".play", ".record")],
     ".trace": [("",), (".files",)],
+    "rmw_manycore_bridge": [(".outside",), (".fastdds",), ("",)],
 }
 MAX_LAYERS = 20
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import struct
 import threading
 
-from rmw_manycore_bridge import types
+from rmw_manycore_bridge.outside import types
 from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.play.position import Position
 from rmw_manycore_py.recording.play.program import CLOCK_TOPIC

@@ -9,9 +9,9 @@ from typing import Any
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 
-from rmw_manycore_bridge import types
-from rmw_manycore_bridge.outside import Outside as Domain
-from rmw_manycore_bridge.policies import to_rclpy
+from rmw_manycore_bridge.fastdds.domain import Domain
+from rmw_manycore_bridge.fastdds.policies import to_rclpy
+from rmw_manycore_bridge.outside import types
 from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.play.stage import RawPublisher
 from rmw_manycore_py.recording.type_hash import type_hash_of

@@ -9,10 +9,10 @@ from typing import Any
 
 from rclpy.event_handler import SubscriptionEventCallbacks
 
-from rmw_manycore_bridge import types
-from rmw_manycore_bridge.outside import Outside as Domain
-from rmw_manycore_bridge.policies import from_rclpy, to_rclpy
-from rmw_manycore_bridge.rcl import RawReader
+from rmw_manycore_bridge.fastdds.domain import Domain
+from rmw_manycore_bridge.fastdds.policies import from_rclpy, to_rclpy
+from rmw_manycore_bridge.fastdds.rcl import RawReader
+from rmw_manycore_bridge.outside import types
 from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.record.side import BATCH, Heard, Offer, RawSubscription
 from rmw_manycore_py.recording.type_hash import type_hash_of
@@ -83,7 +83,7 @@ class _Subscription:
         self._reader = RawReader(self.entity)
         self._last: dict[bytes, int] = {}  # last sequence number by publisher
         self._lost = 0
-        domain.readers.append(self)
+        domain.readers[self] = self.pump_outside
 
     def pump_outside(self) -> None:
         """Deliver a batch; the wait set returns at once while there are more."""
@@ -115,7 +115,7 @@ class _Subscription:
     def close(self) -> None:
         """Destroy the subscription."""
         if self.entity is not None:
-            self._domain.readers.remove(self)
+            del self._domain.readers[self]
             self._reader.close()
             self._domain.node.destroy_subscription(self.entity)
             self.entity = None

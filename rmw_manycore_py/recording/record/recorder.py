@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
-from rmw_manycore_bridge import types
+from rmw_manycore_bridge.outside import types
 from rmw_manycore_py.recording.definitions import NO_SCHEMA, schema_of
 from rmw_manycore_py.recording.metadata import TopicRow
 from rmw_manycore_py.recording.record.side import Offer, Side

@@ -22,7 +22,7 @@ MODULES = (
     *("numpy", "support.nodes.payload", "rclpy.action", "support.nodes.ros", "rosidl_generator_py"),
     *("rmw_manycore_py.cli.main", "rich.console", "rich.table", "yaml"),
     *("rmw_manycore_py.cli.topic.echo", "rmw_manycore_py.ndt.nodes.ndt_scan_matcher"),
-    "rmw_manycore_bridge.process",
+    *("rmw_manycore_bridge.process", "rmw_manycore_bridge.fastdds.outside"),
 )
 MESSAGES = (
     "rcl_interfaces.msg",

@@ -1,10 +1,10 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""DDS side of the bridge: rclpy context and node, and a wait set of its own."""
+"""Membership of a DDS domain: rclpy context and node, and a wait set of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 import rclpy
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
@@ -12,8 +12,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 
-from rmw_manycore_bridge import rcl
-from rmw_manycore_bridge.loop import Loop
+from rmw_manycore_bridge.fastdds import rcl
 
 _GRAPH, _WAKE = 0, 1  # indices of the guard conditions in the wait set
 _NS_PER_S = 1e9
@@ -21,18 +20,12 @@ _NS_PER_S = 1e9
 _UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
 
 
-class OutsideReader(Protocol):
-    """DDS subscription, service or client; `kind` and `entity` are for the wait set."""
+class Domain:
+    """Waits for messages and graph changes in a DDS domain.
 
-    kind: str
-    entity: Any
-
-    def pump_outside(self) -> None:
-        """Forward messages that have arrived."""
-
-
-class Outside(Loop):
-    """Thread that waits for messages and graph changes in a DDS domain."""
+    :ivar readers: called when their key has something: a subscription, service or client, of which
+        `kind` and `entity` are for the wait set.
+    """
 
     def __init__(
         self,
@@ -41,8 +34,6 @@ class Outside(Loop):
         changed: Callable[[], None],
         is_own: Callable[[bytes], bool],
     ) -> None:
-        super().__init__(f"domain {domain}")
-        self.domain = domain
         self._is_own = is_own
         self.context = rclpy.Context()
         rclpy.init(
@@ -53,7 +44,7 @@ class Outside(Loop):
         )
         self.node = _quiet_node(name, self.context)
         self._stand_ins: dict[str, tuple[Node, int]] = {}  # with the number of their services
-        self.readers: list[OutsideReader] = []
+        self.readers: dict[Any, Callable[[], None]] = {}
         self._changed = changed
         with self.context.handle:
             self._wake = _rclpy.GuardCondition(self.context.handle)
@@ -125,19 +116,19 @@ class Outside(Loop):
 
     def turn(self, timeout_s: float | None) -> None:
         """Block until something changes, then forward what has arrived."""
-        readers = list(self.readers)
-        wait_set = self._new_wait_set(readers)
+        readers = list(self.readers.items())
+        wait_set = self._new_wait_set([reader for reader, _ in readers])
         wait_set.wait(-1 if timeout_s is None else int(timeout_s * _NS_PER_S))
         if wait_set.is_ready("guard_condition", _GRAPH):
             self._changed()
         places = {"subscription": 0, "service": 0, "client": 0}
-        for reader in readers:
+        for reader, pump in readers:
             place = places[reader.kind]
             places[reader.kind] += 1
             if wait_set.is_ready(reader.kind, place):
-                reader.pump_outside()
+                pump()
 
-    def _new_wait_set(self, readers: list[OutsideReader]) -> Any:
+    def _new_wait_set(self, readers: list[Any]) -> Any:
         counts = {kind: sum(r.kind == kind for r in readers) for kind in _KINDS}
         wait_set = self._wait_set_of(counts)
         wait_set.clear_entities()

@@ -12,13 +12,11 @@ import ctypes
 from ctypes import POINTER, Structure, byref, c_bool, c_char_p, c_int64, c_size_t, c_uint8, c_void_p
 from typing import Any
 
+from rmw_manycore_bridge.outside.interface import OutsideError
+
 _RCL_RET_OK = 0
 _RCL_RET_SUBSCRIPTION_TAKE_FAILED = 401
 GID_BYTES = 16
-
-
-class OutsideError(RuntimeError):
-    """An rcl call failed; the message is rcl's error string."""
 
 
 class _Allocator(Structure):

@@ -1,0 +1,194 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Interface of the outside: endpoints that others have there, and those of the bridge."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+from rmw_manycore_bridge.outside.loop import Loop
+from rmw_manycore_py.native._transport import Qos
+from rmw_manycore_py.routes.outside import OutsideSettings
+from rmw_manycore_py.routes.route import Route
+
+
+@dataclass(frozen=True)
+class Endpoint:
+    """Publisher or subscription of another node; `type` names what does not fit, if it differs."""
+
+    type: str
+    qos: Qos
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Reply to the bridge's request; without data, the reason why there is none."""
+
+    number: int
+    data: bytes | None
+    reason: str = ""
+
+
+class OutsideError(RuntimeError):
+    """The engine refuses a call; the message says why."""
+
+
+class Subscription(Protocol):
+    """Takes serialized messages; the properties describe the message taken last."""
+
+    @property
+    def publisher(self) -> bytes:
+        """Gid of the publisher."""
+
+    @property
+    def number(self) -> int:
+        """Sequence number; rises by one with each message of the publisher."""
+
+    @property
+    def sent_ns(self) -> int:
+        """Source timestamp, CLOCK_REALTIME."""
+
+    @property
+    def address(self) -> int:
+        """Address, valid until the next message is taken."""
+
+    @property
+    def size(self) -> int:
+        """Size in bytes."""
+
+    def take(self) -> bool:
+        """Take the next message; return whether there is one."""
+
+    def matched(self) -> int:
+        """Return the number of publishers that it is matched with."""
+
+    def close(self) -> None:
+        """Destroy it."""
+
+
+class Publisher(Protocol):
+    """Publishes serialized messages."""
+
+    @property
+    def gid(self) -> bytes:
+        """What subscriptions know it by, 16 bytes."""
+
+    def publish(self, address: int, size: int, sent_ns: int) -> None:
+        """Publish `size` bytes; the memory is free afterwards."""
+
+    def has_listeners(self) -> bool:
+        """Return whether others subscribe to the topic."""
+
+    def matched(self) -> int:
+        """Return the number of subscriptions that it is matched with."""
+
+    def is_acknowledged(self) -> bool:
+        """Return whether every reliable subscription has acknowledged everything."""
+
+    def close(self) -> None:
+        """Destroy it."""
+
+
+class Server(Protocol):
+    """Server of a service, for callers outside."""
+
+    def take(self) -> tuple[Any, bytes] | None:
+        """Take the next request: its caller, for `reply`, and its data."""
+
+    def reply(self, caller: Any, data: bytes) -> None:
+        """Send a response."""
+
+    def close(self) -> None:
+        """Destroy it."""
+
+
+class Client(Protocol):
+    """Client of a service that is outside."""
+
+    def is_ready(self) -> bool:
+        """Return whether a server is matched."""
+
+    def send(self, data: bytes) -> int:
+        """Send a request and return its number."""
+
+    def take(self) -> Answer | None:
+        """Take the next answer."""
+
+    def close(self) -> None:
+        """Destroy it."""
+
+
+class Outside(Loop):
+    """Thread of one domain outside.
+
+    :ivar readers: called in this thread when their subscription, server or client has something.
+    """
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name)
+        self.readers: dict[Any, Callable[[], None]] = {}
+
+    @classmethod
+    @abstractmethod
+    def open(
+        cls,
+        settings: OutsideSettings,
+        domain: int,
+        name: str,
+        changed: Callable[[], None],
+        is_own: Callable[[bytes], bool],
+    ) -> Outside:
+        """Join a domain.
+
+        :param name: name of the bridge's node there; those of its other processes have the same
+            stem, up to the last underscore.
+        :param changed: called after each change of the graph.
+        :param is_own: whether a publisher with this gid is of this bridge.
+        """
+
+    @classmethod
+    @abstractmethod
+    def prepare(cls, scratch: Path, replaces: bool) -> None:
+        """Prepare this process before it joins a domain; print what will keep it from working.
+
+        :param scratch: a file that this process may write; it is removed with the platform.
+        :param replaces: whether it replaces a process that received, and has ended.
+        """
+
+    @abstractmethod
+    def require_type(self, name: str) -> None:
+        """Raise ImportError unless the type can cross."""
+
+    @abstractmethod
+    def publishers(self, route: Route, is_wanted: bool) -> list[Endpoint]:
+        """Return the publishers of a topic, except this bridge's.
+
+        :param is_wanted: whether to look for publishers that the graph does not report, too.
+        """
+
+    @abstractmethod
+    def published(self, wanted: Callable[[str], bool]) -> Mapping[str, frozenset[str]]:
+        """Return the types published by others than this bridge, by topic name."""
+
+    @abstractmethod
+    def server_types(self, service: str) -> list[str]:
+        """Return the types of a service's servers, except this bridge's."""
+
+    @abstractmethod
+    def subscribe(self, route: Route, qos: Qos) -> Subscription:
+        """Subscribe to a topic."""
+
+    @abstractmethod
+    def publish(self, route: Route, qos: Qos) -> Publisher:
+        """Create a publisher."""
+
+    @abstractmethod
+    def serve(self, route: Route) -> Server:
+        """Offer a service, on a node of the route's name if it has one."""
+
+    @abstractmethod
+    def call(self, route: Route) -> Client:
+        """Create a client."""

@@ -1,0 +1,37 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Which engine a bridge uses outside, and where it connects to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from rmw_manycore_py.routes.route import Direction
+
+EngineName = Literal["fastdds", "zenoh"]
+ENGINES: tuple[EngineName, ...] = ("fastdds", "zenoh")
+_DEFAULT: EngineName = "fastdds"
+
+
+@dataclass(frozen=True)
+class OutsideSettings:
+    """The outside of one bridge; a platform has at most one bridge of each engine.
+
+    :ivar connect: locators of zenoh routers or peers, as tcp/localhost:7447.
+    """
+
+    engine: EngineName = _DEFAULT
+    connect: tuple[str, ...] = ()
+
+    def stem(self, direction: Direction) -> str:
+        """Return what the names of files and nodes of its processes have in common.
+
+        >>> OutsideSettings("zenoh").stem("inward")
+        'zenoh_inward'
+        """
+        return direction if self.engine == _DEFAULT else f"{self.engine}_{direction}"
+
+
+def engine_of(stem: str) -> str:
+    """Return the engine of a stem."""
+    return stem.rpartition("_")[0] or _DEFAULT
