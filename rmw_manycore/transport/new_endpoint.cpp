@@ -49,7 +49,7 @@ uint32_t new_endpoint(
   for (std::atomic<uint64_t> * count :
        {&entry.counters.messages, &entry.counters.bytes, &entry.counters.lost,
         &entry.counters.expired, &entry.counters.refused, &entry.counters.overwritten,
-        &entry.counters.dropped, &entry.counters.held}) {
+        &entry.counters.dropped, &entry.counters.in_place}) {
     count->store(0);
   }
   entry.asserted_ns.store(ManualLiveliness::never);

@@ -34,18 +34,21 @@ class PlatformState:
     processes: list[_transport.ProcessInfo]
     nodes: defaultdict[int, list[str]]  # full names by process slot
     losses: list[Row]
+    copies: list[Row]
     transfers: list[_transport.TopicConfiguration]
 
     @classmethod
     def of(cls, name: str) -> PlatformState:
         """Read the state of a platform."""
         with view.open_platform(name) as opened:
+            endpoints = opened.endpoints()
             return cls(
                 opened.info(),
                 opened.clusters(),
                 opened.processes(),
                 node_names_by_process(opened.nodes()),
-                view.losses(opened.endpoints()),
+                view.losses(endpoints),
+                view.copies(endpoints),
                 [topic for topic in opened.topic_table() if topic.transfer != "dsm"],
             )
 
@@ -56,6 +59,7 @@ class PlatformState:
             "clusters": [cluster_row(cluster) for cluster in self.clusters],
             "processes": [{**process_row(p), "nodes": self.nodes[p.slot]} for p in self.processes],
             "losses": self.losses,
+            "copies": self.copies,
             "transfers": [
                 {
                     "topic": topic.name,
@@ -86,7 +90,7 @@ class Unreadable:
 def command(platform: str | None, as_json: bool) -> None:
     """Show this user's platforms and lost messages.
 
-    Clusters, processes, and messages lost per topic.
+    Clusters, processes, and messages lost per topic; copies of large messages.
     """
     if platform:
         states: list[PlatformState | Unreadable] = [PlatformState.of(platform)]
@@ -122,6 +126,11 @@ def _show(state: PlatformState | Unreadable) -> None:
     for topic in state.transfers:
         text = transfer_text(topic.transfer, topic.priority, topic.synchronous)
         echo(f"{escaped(topic.name)}: transfer {text}")
+    for row in state.copies:
+        names, copied = escaped(f"{row['node']} {row['topic']}"), row["copies_per_message"]
+        words = [] if copied is None else [f"copies per message {copied:.2g}"]
+        words += [f"held {size_text(row['held_bytes'])}"] if row["held_bytes"] else []
+        echo(f"{names}: {', '.join(words)}")
     for loss in state.losses:
         names = escaped(f"{loss['node']} {loss['topic']}")
         echo(f"{names}: {loss['counter']} {loss['count']}")

@@ -196,8 +196,8 @@ class CounterValues:
         """Publisher: records that did not reach a cluster they were transferred to."""
 
     @property
-    def held(self) -> int:
-        """Subscription: read in their record after the take, or copied once from there."""
+    def in_place(self) -> int:
+        """Written or read where their record lies, without a copy."""
 
 class EndpointInfo:
     """A publisher or subscription of a topic, or of a service's requests or replies."""
@@ -240,6 +240,13 @@ class EndpointInfo:
 
     @property
     def counters(self) -> CounterValues: ...
+    @property
+    def held_bytes(self) -> int:
+        """SMEM of large records that readers hold.
+
+        Publisher: of its own. Subscription: of its topic, by its process.
+        """
+
     @property
     def transfer(self) -> Transfer: ...
 
@@ -357,10 +364,10 @@ class Platform:
         """Return a number that changes when a node or endpoint comes or goes."""
 
     def activity(self) -> bytes:
-        """Return what changes with every message, endpoint by endpoint: rows of 11 uint64.
+        """Return what changes with every message, endpoint by endpoint: rows of 13 uint64.
 
-        Endpoint (bytes 8 to 15 of its gid), the seven of CounterValues, entries in its queue,
-        entries that the queue can hold, deadlines missed; the last three of subscriptions only.
+        Endpoint (bytes 8 to 15 of its gid), the eight of CounterValues; of subscriptions entries in
+        the queue, entries that it can hold, deadlines missed; `EndpointInfo.held_bytes`.
         """
 
     def deaths(self) -> list[Death]:

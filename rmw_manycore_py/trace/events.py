@@ -64,6 +64,7 @@ class Kind(IntEnum):
     HAND = 29
     ARRIVE = 30
     DROP = 31
+    IN_PLACE = 32
 
 
 EndpointId = int

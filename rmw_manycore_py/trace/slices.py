@@ -48,6 +48,7 @@ class What(IntEnum):
     HAND = 17
     ARRIVE = 18
     DROP = 19
+    IN_PLACE = 20
 
 
 # Category shown by viewers, and prefix of the name; the topic follows.
@@ -72,6 +73,7 @@ _WORDS = {
     What.HAND: ("transfer", "hand over"),
     What.ARRIVE: ("transfer", "arrive"),
     What.DROP: ("transfer", "drop"),
+    What.IN_PLACE: ("event", "in place"),
 }
 # Arguments shown by viewers: label, and field of SLICE.
 ARGUMENTS = {
@@ -86,6 +88,7 @@ ARGUMENTS = {
     What.HAND: (("number", "number"), ("cluster", "value")),
     What.ARRIVE: (("number", "number"), ("cluster", "value")),
     What.DROP: (("number", "number"), ("cluster", "value")),
+    What.IN_PLACE: (("number", "number"),),
 }
 _INSTANTS = {
     Kind.LOST: What.LOST,
@@ -97,6 +100,7 @@ _INSTANTS = {
     Kind.HAND: What.HAND,
     Kind.ARRIVE: What.ARRIVE,
     Kind.DROP: What.DROP,
+    Kind.IN_PLACE: What.IN_PLACE,
 }
 
 _TRANSFERS = (What.HAND, What.ARRIVE, What.DROP)
@@ -287,4 +291,6 @@ class _Spans:
             found["value"] = self._events["value"][at]
         if what in _TRANSFERS:
             self._name_record(found, at, self._ids[at])
+        if what == What.IN_PLACE:
+            self._name_taken(found, at)
         return found

@@ -15,7 +15,7 @@ from rmw_manycore_py.platform.monitor.sample import (
     CAPACITY,
     DEADLINES,
     EXPIRED,
-    HELD,
+    HELD_BYTES,
     LOST,
     MESSAGES,
     QUEUED,
@@ -82,7 +82,7 @@ def _endpoint(look: Look, row: int, endpoint: Endpoint) -> Row:
     loads = look.loads
     counts = loads.after.counts[row]
     changes, seconds = loads.changes[row], loads.seconds or 1.0
-    messages = int(changes[MESSAGES])
+    messages, copies = int(changes[MESSAGES]), loads.copies_of(row)
     return {
         "kind": endpoint.kind,
         "role": endpoint.role,
@@ -93,7 +93,8 @@ def _endpoint(look: Look, row: int, endpoint: Endpoint) -> Row:
         "rate": rate_text(messages / seconds),
         "size": bytes_text(int(changes[BYTES]) / messages) if messages > 0 else "",
         "queue": f"{counts[QUEUED]}/{counts[CAPACITY]}" if counts[CAPACITY] else "",
-        "held": f"{changes[HELD] / messages:.0%}" if changes[HELD] > 0 else "",
+        "copies": "" if copies is None else f"{copies:.2g}",
+        "held": bytes_text(int(counts[HELD_BYTES])) if counts[HELD_BYTES] else "",
         "lost": int(counts[LOST] + counts[EXPIRED] + counts[REFUSED]),
         "deadlines_missed": int(counts[DEADLINES]),
     }

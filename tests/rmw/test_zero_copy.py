@@ -344,10 +344,15 @@ def open_files() -> int:
     return len(os.listdir("/proc/self/fd"))
 
 
-def test_messages_that_are_held_are_counted(node):
+def test_messages_that_are_read_in_place_are_counted(node):
     exchange = Exchange(node)
     for values in (large(seed=1), array.array("B", b"small"), large(seed=2)):
         assert exchange(values) == values
     found = Platform(os.environ["MANYCORE_PLATFORM"]).endpoints()
-    counters = [e.counters for e in found if e.topic == "/large" and e.kind == "subscription"]
-    assert [(one.messages, one.held) for one in counters] == [(3, 2)]
+    counters = {e.kind: e.counters for e in found if e.topic == "/large"}
+    assert {kind: one.messages for kind, one in counters.items()} == {
+        "publisher": 3,
+        "subscription": 3,
+    }
+    assert counters["subscription"].in_place == 2
+    assert counters["publisher"].in_place == 0

@@ -86,7 +86,7 @@ void bind_counter_values(nb::module_ & module) {
     .def_ro("refused", &CounterValues::refused)
     .def_ro("overwritten", &CounterValues::overwritten)
     .def_ro("dropped", &CounterValues::dropped)
-    .def_ro("held", &CounterValues::held);
+    .def_ro("in_place", &CounterValues::in_place);
 }
 
 void bind_endpoint_info(nb::module_ & module) {
@@ -104,6 +104,7 @@ void bind_endpoint_info(nb::module_ & module) {
     .def_ro("qos", &EndpointRow::qos)
     .def_prop_ro("matched", [](const EndpointRow & row) { return row.matched; })
     .def_ro("counters", &EndpointRow::counters)
+    .def_ro("held_bytes", &EndpointRow::held_bytes)
     .def_prop_ro("transfer", word<EndpointRow>(&EndpointRow::transfer));
 }
 
@@ -116,14 +117,19 @@ std::vector<EndpointRow> rows_of(
     by_handle.emplace(node.handle, &node);
   }
   const std::vector<uint64_t> matches = count_matches(endpoints);
+  std::unordered_map<uint64_t, Activity> activities;
+  for (const Activity & activity : graph.activity_of(endpoints)) {
+    activities.emplace(activity.endpoint, activity);
+  }
   std::vector<EndpointRow> rows;
   for (size_t i = 0; i < endpoints.size(); ++i) {
-    const std::optional<Activity> activity = graph.activity_of(endpoints[i].gid);
-    if (!activity) {
+    const auto found = activities.find(endpoint_in(endpoints[i].gid));
+    if (found == activities.end()) {
       continue;
     }
-    EndpointRow & row = rows.emplace_back(
-      EndpointRow{std::move(endpoints[i]), activity->counters, "", "", matches[i]});
+    const Activity & activity = found->second;
+    EndpointRow & row = rows.emplace_back(EndpointRow{
+      std::move(endpoints[i]), activity.counters, activity.held_bytes, "", "", matches[i]});
     const auto node = by_handle.find(row.node);
     if (node != by_handle.end()) {
       row.node_name = node->second->name;

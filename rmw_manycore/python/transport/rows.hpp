@@ -29,6 +29,7 @@ struct ClusterRow : ClusterInfo {
 /// An endpoint with its counters and the name of its node.
 struct EndpointRow : EndpointInfo {
   CounterValues counters;
+  uint64_t held_bytes;  ///< see Activity
   std::string node_name;
   std::string node_namespace;
   uint64_t matched = 0;  ///< endpoints of the snapshot with which it is matched

@@ -6,6 +6,7 @@
 
 #include "python/transport/bindings.hpp"
 #include "python/transport/gid.hpp"
+#include "transport/layout/chunk_layout.hpp"
 
 namespace nb = nanobind;
 
@@ -61,6 +62,10 @@ int BoundClaim::add_view(PyObject * self, Py_buffer * view, int flags) noexcept 
   void * const data = const_cast<uint8_t *>(claim_->data());
   if (PyBuffer_FillInfo(view, self, data, size, is_read_only, flags) != 0) {
     return -1;
+  }
+  if (!is_counted_ && claim_->size() >= min_chunk_message_bytes) {
+    claim_->count_in_place();
+    is_counted_ = true;
   }
   ++views_;
   return 0;

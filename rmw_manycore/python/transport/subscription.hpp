@@ -52,6 +52,7 @@ private:
   std::shared_ptr<SharedSubscription> source_;
   std::optional<Claim> claim_;
   size_t views_ = 0;
+  bool is_counted_ = false;  ///< as read in place
 };
 
 /// A subscription as Python has it, until closed.

@@ -32,6 +32,9 @@ bool borrow(
   }
   found.hold.reset(new RecordHold{process, std::move(*hold)});
   cdr.deserialize(cut.bytes.data(), cut.bytes.size(), message);
+  if (found.hold->hold.is_sole()) {  // else Python's message gets a copy
+    claim.count_in_place();
+  }
   borrowed = std::move(found);
   return true;
 }

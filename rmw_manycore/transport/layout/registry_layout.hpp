@@ -104,7 +104,8 @@ struct EndpointCounters {
   /// Publisher: records recycled while a reader still wanted them.
   std::atomic<uint64_t> overwritten;
   std::atomic<uint64_t> dropped;  ///< publisher: records that did not reach a cluster
-  std::atomic<uint64_t> held;     ///< subscription: messages whose record was held
+  /// Messages written (publisher) or read (subscription) where their record lies, without a copy.
+  std::atomic<uint64_t> in_place;
 };
 
 /// A publisher or subscription.

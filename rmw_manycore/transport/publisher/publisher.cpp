@@ -65,7 +65,11 @@ uint64_t Publisher::publish(Loan && loan, size_t size_bytes, int64_t source_time
   const Writing writing = impl.write();
   impl.writer.take_back(ended.lent_->chunk);
   ended.lent_.reset();
-  return impl.publish({size_bytes, source_timestamp_ns, {}}, {});
+  impl.registry.tracer().note(
+    TraceKind::in_place, impl.slot, impl.writer.next_number(), endpoint_in(impl.entry.gid));
+  const uint64_t sequence_number = impl.publish({size_bytes, source_timestamp_ns, {}}, {});
+  impl.entry.counters.in_place.fetch_add(1, std::memory_order_relaxed);
+  return sequence_number;
 }
 
 /// The room is found, and filled.

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "transport/registry/endpoint_blocks.hpp"
+#include "transport/registry/held_memory.hpp"
 #include "transport/registry/snapshot.hpp"
 #include "transport/registry/subscription_copy.hpp"
 
@@ -13,8 +14,23 @@ namespace {
 CounterValues values_of(const EndpointCounters & counters) {
   return {counters.messages.load(), counters.bytes.load(),   counters.lost.load(),
           counters.expired.load(),  counters.refused.load(), counters.overwritten.load(),
-          counters.dropped.load(),  counters.held.load()};
+          counters.dropped.load(),  counters.in_place.load()};
 }
+
+/// An endpoint's activity, without what it holds, and what that is found by.
+struct Seen {
+  Activity activity;
+  EndpointKind kind;
+  uint64_t topic_hash;
+  uint32_t process;
+  std::vector<HeldChunk> held;  ///< of a publisher
+
+  bool holds(const HeldChunk & chunk, const Seen & publisher) const noexcept {
+    return kind == EndpointKind::publisher
+             ? this == &publisher
+             : topic_hash == publisher.topic_hash && chunk.is_held_by(process);
+  }
+};
 
 Activity activity_of(Registry & registry, const EndpointEntry & entry) {
   Activity activity;
@@ -32,6 +48,33 @@ Activity activity_of(Registry & registry, const EndpointEntry & entry) {
     activity.deadlines_missed = header.deadline.missed(entry.qos.deadline_ns).total;
   }
   return activity;
+}
+
+auto look(Registry & registry) {
+  return [&registry](uint32_t, const EndpointEntry & entry) -> Seen {
+    return {
+      activity_of(registry, entry), entry.kind, entry.topic_hash, entry.process.load(),
+      held_chunks(registry, entry)};
+  };
+}
+
+std::vector<Activity> with_held(const std::vector<Seen> & all) {
+  std::vector<const Seen *> publishers;
+  for (const Seen & seen : all) {
+    if (!seen.held.empty()) {
+      publishers.push_back(&seen);
+    }
+  }
+  std::vector<Activity> rows;
+  for (const Seen & seen : all) {
+    Activity & row = rows.emplace_back(seen.activity);
+    for (const Seen * const publisher : publishers) {
+      for (const HeldChunk & chunk : publisher->held) {
+        row.held_bytes += seen.holds(chunk, *publisher) ? chunk.bytes : 0;
+      }
+    }
+  }
+  return rows;
 }
 
 EndpointInfo describe(uint32_t, const EndpointEntry & entry) {
@@ -116,19 +159,21 @@ std::vector<EndpointInfo> Graph::endpoints() const {
 }
 
 std::vector<Activity> Graph::activity() const {
-  return list_live<Activity>(registry_.endpoints(), [&](uint32_t, const EndpointEntry & entry) {
-    return manycore::activity_of(registry_, entry);
-  });
+  return with_held(list_live<Seen>(registry_.endpoints(), look(registry_)));
 }
 
-std::optional<Activity> Graph::activity_of(const Gid & endpoint) const {
-  const auto slot = static_cast<uint32_t>(endpoint_in(endpoint));
-  std::vector<Activity> found;
-  append_live(registry_.endpoints(), slot, found, [&](uint32_t, const EndpointEntry & entry) {
-    return manycore::activity_of(registry_, entry);
-  });
-  const bool is_there = !found.empty() && found[0].endpoint == endpoint_in(endpoint);
-  return is_there ? std::optional(found[0]) : std::nullopt;
+std::vector<Activity> Graph::activity_of(const std::vector<EndpointInfo> & endpoints) const {
+  std::vector<Seen> all;
+  for (const EndpointInfo & endpoint : endpoints) {
+    const size_t before = all.size();
+    append_live(
+      registry_.endpoints(), static_cast<uint32_t>(endpoint_in(endpoint.gid)), all,
+      look(registry_));
+    if (all.size() > before && all.back().activity.endpoint != endpoint_in(endpoint.gid)) {
+      all.pop_back();
+    }
+  }
+  return with_held(all);
 }
 
 std::vector<Death> Graph::deaths() const {

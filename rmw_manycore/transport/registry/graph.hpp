@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +29,7 @@ struct CounterValues {
   uint64_t refused = 0;      ///< publisher: messages that did not fit
   uint64_t overwritten = 0;  ///< publisher: records recycled while a reader still wanted them
   uint64_t dropped = 0;      ///< publisher: records that did not reach a cluster
-  uint64_t held = 0;         ///< subscription: messages whose record was held
+  uint64_t in_place = 0;     ///< messages written or read without a copy
 };
 
 /// A process in a snapshot of the graph.
@@ -77,8 +76,11 @@ struct Activity {
   uint64_t queued = 0;    ///< subscription: hints in its queue, without the backlog of a resync
   uint64_t capacity = 0;  ///< subscription: queue capacity in hints
   uint64_t deadlines_missed = 0;  ///< subscription: missed periods of the requested deadline
+  /// SMEM of large records that readers hold. Publisher: of its own. Subscription: of its topic, by
+  /// its process.
+  uint64_t held_bytes = 0;
 };
-static_assert(sizeof(Activity) == 96);
+static_assert(sizeof(Activity) == 104);
 
 /// Consistent snapshots of the platform's processes, clusters, nodes and endpoints. Takes no
 /// registry lock. Thread-safe; not for use on the data path.
@@ -94,8 +96,9 @@ public:
   std::vector<EndpointInfo> endpoints() const;
   /// Activity of all endpoints. Each row is consistent in itself; rows may be of different moments.
   std::vector<Activity> activity() const;
-  /// Activity of one endpoint, if it still exists.
-  std::optional<Activity> activity_of(const Gid & endpoint) const;
+  /// Of these endpoints only, as far as they still exist; what subscriptions hold, of publishers
+  /// among them.
+  std::vector<Activity> activity_of(const std::vector<EndpointInfo> & endpoints) const;
   /// Deaths still recorded, oldest first.
   std::vector<Death> deaths() const;
   /// Endpoints of one topic or service; a constant-time lookup by name.

@@ -39,13 +39,16 @@ std::optional<Hold> Claim::hold() noexcept {
   if (chunk_ == nullptr || impl.membership.is_inherited() || !impl.holds.may_take(impl.entry.qos)) {
     return std::nullopt;
   }
-  std::optional<Hold> hold = Hold::take(
+  return Hold::take(
     {impl.registry, source_.cluster(), source_.row(), impl.entry.process.load()}, *chunk_,
     {data_, size_}, is_for_one_reader_, impl.holds);
-  if (hold) {
-    impl.entry.counters.held.fetch_add(1, std::memory_order_relaxed);
-  }
-  return hold;
+}
+
+void Claim::count_in_place() noexcept {
+  const Subscription::Impl & impl = *subscription_.impl_;
+  impl.entry.counters.in_place.fetch_add(1, std::memory_order_relaxed);
+  impl.registry.tracer().note(
+    TraceKind::in_place, impl.slot, number_, endpoint_in(info_.publisher));
 }
 
 void Claim::reject() noexcept {

@@ -43,6 +43,8 @@ public:
   /// Keeps the bytes in place after this claim. Nothing where the record lies in the ring, as small
   /// ones do, or where too many are held: then copy.
   std::optional<Hold> hold() noexcept;
+  /// Counts the record as one that its reader does not copy.
+  void count_in_place() noexcept;
 
   /// Counts the record as lost instead of taken, because its bytes could not be deserialized.
   void reject() noexcept;

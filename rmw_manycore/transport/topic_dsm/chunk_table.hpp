@@ -5,6 +5,7 @@
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/registry/block_in_hand.hpp"
 #include "transport/registry/entry_table.hpp"
+#include "transport/registry/held_memory.hpp"
 #include "transport/registry/registry.hpp"
 
 namespace manycore {
@@ -29,14 +30,6 @@ inline ChunkHead * chunk_head(const Cluster & cluster, uint64_t data_offset) noe
   ChunkHead * const head =
     data_offset < chunk_data ? nullptr : cluster.find<ChunkHead>(data_offset - chunk_data);
   return head != nullptr && head->magic == chunk_magic ? head : nullptr;
-}
-
-/// True while the process that a word of ChunkHead::holders names is a member.
-inline bool is_holding(Registry & registry, uint64_t holder) noexcept {
-  const Table<ProcessEntry> & processes = registry.processes();
-  const uint32_t slot = slot_in(holder);
-  return holder != 0 && slot < processes.high_water() && processes.is_live(slot) &&
-         processes[slot].slot.incarnation.load() == incarnation_in(holder);
 }
 
 /// The loads are seq_cst: a reader stores its word before it ends its claim, which the caller has

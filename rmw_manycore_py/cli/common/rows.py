@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from rmw_manycore_py.native import _transport
+from rmw_manycore_py.platform.copies import copies_per_message
 from rmw_manycore_py.ros.qos import policies_of
 
 Row = dict[str, Any]
@@ -59,8 +60,13 @@ def counters_row(counters: _transport.CounterValues) -> dict[str, int]:
         "refused": counters.refused,
         "overwritten": counters.overwritten,
         "dropped": counters.dropped,
-        "held": counters.held,
+        "in_place": counters.in_place,
     }
+
+
+def copies_of(counters: _transport.CounterValues) -> float | None:
+    """Return the copies of a message that an endpoint makes; None of small ones."""
+    return copies_per_message(counters.messages, counters.bytes, counters.in_place)
 
 
 def endpoint_row(endpoint: _transport.EndpointInfo) -> Row:
@@ -79,5 +85,7 @@ def endpoint_row(endpoint: _transport.EndpointInfo) -> Row:
         "qos": policies_of(endpoint.qos),
         "matched": endpoint.matched,
         "counters": counters_row(endpoint.counters),
+        "copies_per_message": copies_of(endpoint.counters),
+        "held_bytes": endpoint.held_bytes,
         "transfer": endpoint.transfer,
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from rmw_manycore_py.cli.common.rows import Row, counters_row
+from rmw_manycore_py.cli.common.rows import Row, copies_of, counters_row
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native._transport import EndpointInfo, NodeInfo, ProcessInfo
@@ -48,6 +48,21 @@ def losses(endpoints: Iterable[EndpointInfo]) -> list[Row]:
         for e in endpoints
         for counter, count in counters_row(e.counters).items()
         if counter in LOSSES and count
+    ]
+
+
+def copies(endpoints: Iterable[EndpointInfo]) -> list[Row]:
+    """Return how often each endpoint with large messages copies them, and what readers hold."""
+    return [
+        {
+            "node": _owner(e),
+            "topic": e.topic,
+            "kind": e.kind,
+            "copies_per_message": copies_of(e.counters),
+            "held_bytes": e.held_bytes,
+        }
+        for e in endpoints
+        if e.held_bytes or copies_of(e.counters) is not None
     ]
 
 

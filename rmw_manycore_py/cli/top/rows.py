@@ -82,7 +82,8 @@ def topic_rows(look: Look) -> list[Row]:
     """Return a row per topic with its publish rates per second, largest first.
 
     `lost` counts the messages its current subscriptions have missed. `queued` and `capacity` are
-    those of its fullest queue. `p99_us` is None unless the platform is traced.
+    those of its fullest queue. `p99_us` is None unless the platform is traced, `copies` (of a
+    message on its way to a subscription) unless messages are large; readers hold `held` bytes.
     """
     rows = []
     for name, load in look.loads.topics.items():
@@ -96,6 +97,8 @@ def topic_rows(look: Look) -> list[Row]:
                 "capacity": load.capacity,
                 "queue_percent": round(100 * load.fill, 1),
                 "lost": load.lost,
+                "copies": look.loads.copies.get(name),
+                "held": look.loads.held_bytes.get(name, 0),
                 "p99_us": None if latency is None else round(latency.p99_us, 1),
             }
         )

@@ -115,7 +115,9 @@ def _nodes(rows: Sequence[Row]) -> Table:
 
 
 def _topics(rows: Sequence[Row]) -> Table:
-    table = new_table("#messages/s", "#bytes/s", "#p99", "#queue", "", "#lost", "topic")
+    table = new_table(
+        "#messages/s", "#bytes/s", "#p99", "#queue", "", "#lost", "#copies", "#held", "topic"
+    )
     for row in rows:
         p99 = "-" if row["p99_us"] is None else time_text(row["p99_us"])
         queue = f"{row['queued']}/{row['capacity']}" if row["capacity"] else "-"
@@ -126,6 +128,8 @@ def _topics(rows: Sequence[Row]) -> Table:
             queue,
             bar(row["queue_percent"], 10),
             Text(str(row["lost"]), style="red" if row["lost"] else ""),
+            "-" if row["copies"] is None else f"{row['copies']:.2g}",
+            size_text(row["held"]) if row["held"] else "-",
             row["topic"],
         )
     return table

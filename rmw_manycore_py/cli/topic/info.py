@@ -9,8 +9,8 @@ from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.completion import complete_topics
 from rmw_manycore_py.cli.common.names import unknown
 from rmw_manycore_py.cli.common.options import examples, graph_options
-from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
-from rmw_manycore_py.cli.common.rows import counters_row, endpoint_row
+from rmw_manycore_py.cli.common.printing import echo, escaped, print_json, size_text
+from rmw_manycore_py.cli.common.rows import copies_of, counters_row, endpoint_row
 from rmw_manycore_py.native._transport import EndpointInfo, Qos
 
 
@@ -49,7 +49,7 @@ def command(topic: str, platform: str, as_json: bool, verbose: bool) -> None:
 
 def describe(endpoint: EndpointInfo) -> str:
     """Format an endpoint as `ros2 topic info --verbose` does, followed by its placement."""
-    counters = counters_row(endpoint.counters)
+    counters, copies = counters_row(endpoint.counters), copies_of(endpoint.counters)
     lines = (
         f"Node name: {endpoint.node_name}",
         f"Node namespace: {endpoint.node_namespace}",
@@ -63,6 +63,8 @@ def describe(endpoint: EndpointInfo) -> str:
         *([f"Transfer: {endpoint.transfer}"] if endpoint.transfer != "dsm" else []),
         f"Matched: {endpoint.matched}",
         f"Counters: {', '.join(f'{name} {count}' for name, count in counters.items())}",
+        *([] if copies is None else [f"Copies per message: {copies:.2g}"]),
+        *([f"Held: {size_text(endpoint.held_bytes)}"] if endpoint.held_bytes else []),
     )
     return "\n".join(map(escaped, lines))
 

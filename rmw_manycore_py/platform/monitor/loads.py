@@ -10,11 +10,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rmw_manycore_py.platform.copies import copies_per_message
 from rmw_manycore_py.platform.monitor.graph import Graph
 from rmw_manycore_py.platform.monitor.sample import (
     BYTES,
     CAPACITY,
     EXPIRED,
+    HELD_BYTES,
+    IN_PLACE,
     LOST,
     MESSAGES,
     QUEUED,
@@ -119,6 +122,36 @@ class Loads:
         missed = after.totals(LOST, publishers=False) + after.totals(EXPIRED, publishers=False)
         result: Counts = missed + after.totals(REFUSED, publishers=True)
         return result
+
+    def copies_of(self, row: int) -> float | None:
+        """Return the copies of a message that an endpoint makes; None of small ones."""
+        changes = self.changes[row]
+        return copies_per_message(
+            int(changes[MESSAGES]), int(changes[BYTES]), int(changes[IN_PLACE])
+        )
+
+    @cached_property
+    def copies(self) -> dict[str, float]:
+        """Copies of a message on its way to one subscription, of topics with large messages."""
+        sides = (self._copies(publishers=True), self._copies(publishers=False))
+        return {
+            name: published + taken
+            for name, published, taken in zip(self.graph.topics, *sides, strict=True)
+            if published is not None and taken is not None
+        }
+
+    def _copies(self, *, publishers: bool) -> list[float | None]:
+        chosen = self.graph.is_publisher == publishers
+        sums = np.zeros((len(self.graph.topics) + 1, 3), dtype=np.int64)
+        changes = self.changes[chosen][:, (MESSAGES, BYTES, IN_PLACE)]
+        np.add.at(sums, self.graph.topic_index[chosen], changes)
+        return [copies_per_message(*row) for row in sums[:-1].tolist()]
+
+    @cached_property
+    def held_bytes(self) -> dict[str, int]:
+        """SMEM of large messages that readers hold, of the topics that have any."""
+        held = self.after.totals(HELD_BYTES, publishers=True).tolist()
+        return {name: size for name, size in zip(self.graph.topics, held, strict=True) if size}
 
     @cached_property
     def topics(self) -> dict[str, TopicLoad]:

@@ -24,12 +24,13 @@ Counts = NDArray[np.int64]
     REFUSED,
     OVERWRITTEN,
     DROPPED,
-    HELD,
+    IN_PLACE,
     QUEUED,
     CAPACITY,
     DEADLINES,
-) = range(11)
-_WORDS = 12
+    HELD_BYTES,
+) = range(12)
+_WORDS = 13
 
 
 @dataclass(frozen=True)

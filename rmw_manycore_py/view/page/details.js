@@ -4,7 +4,7 @@
 import { Charts } from "./charts.js";
 import { post } from "./requests.js";
 
-const FIGURES = ["rate", "size", "held", "queue", "lost", "deadlines_missed", "qos"];
+const FIGURES = ["rate", "size", "copies", "held", "queue", "lost", "deadlines_missed", "qos"];
 const COLUMNS = {
   node: ["kind", "topic", "type", ...FIGURES],
   topic: ["kind", "node", ...FIGURES],

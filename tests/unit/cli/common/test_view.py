@@ -20,7 +20,7 @@ COUNTERS = {
     "refused": 0,
     "overwritten": 0,
     "dropped": 0,
-    "held": 0,
+    "in_place": 0,
 }
 
 

@@ -31,7 +31,7 @@ def endpoint(number: int, kind: Any, topic: str = "/t", role: Any = "topic") -> 
 
 def sample(time_s: float, rows: list[tuple[Endpoint, list[int]]], cpu_ns: dict[int, int]) -> Sample:
     graph = Graph("p", 5, 16, 1 << 20, (TALKER, LISTENER), tuple(end for end, _ in rows))
-    counts = np.zeros((len(rows), 11), dtype=np.int64)
+    counts = np.zeros((len(rows), 12), dtype=np.int64)
     for row, values in enumerate(values for _, values in rows):
         counts[row, : len(values)] = values
     cluster: Any = SimpleNamespace(id=1, messages=int(10 * time_s), receive_thread_pid=9)
@@ -61,6 +61,32 @@ def test_rates_are_differences() -> None:
     assert (load.rate_hz, load.bytes_per_s, load.message_bytes) == (3.0, 30.0, 10.0)
     assert (load.queued, load.capacity, load.fill) == (3, 10, 0.3)
     assert (load.lost, load.losses_per_s) == (4, 1.5)
+
+
+LARGE = 1 << 20
+
+
+@pytest.mark.parametrize(
+    ("published", "taken", "copies"),
+    [
+        ([4, 4 * LARGE], [8, 8 * LARGE], 2.0),
+        ([4, 4 * LARGE], [8, 8 * LARGE, 0, 0, 0, 0, 0, 6], 1.25),
+        ([4, 4 * LARGE, 0, 0, 0, 0, 0, 4], [8, 8 * LARGE, 0, 0, 0, 0, 0, 8], 0.0),
+        ([4, 4 * LARGE], [0, 0], None),
+        ([4, 40], [8, 80], None),
+    ],
+)
+def test_copies_are_those_of_the_publisher_and_of_a_subscription(
+    published: list[int], taken: list[int], copies: float | None
+) -> None:
+    before = sample(0.0, [(A, []), (C, [])], {})
+    loads = Loads(before, sample(1.0, [(A, published), (C, taken)], {}))
+    assert loads.copies.get("/t") == copies
+
+
+def test_memory_that_readers_hold_is_that_of_the_publishers() -> None:
+    rows = [(A, [*([0] * 11), 7]), (B, [*([0] * 11), 5]), (C, [*([0] * 11), 7])]
+    assert Loads(sample(0.0, [], {}), sample(1.0, rows, {})).held_bytes == {"/t": 12}
 
 
 def published(messages: int, size_bytes: int, seconds: float) -> TopicLoad:
