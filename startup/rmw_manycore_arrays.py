@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from _rmw_manycore_arrays import Field
 
 VARIABLE = "MANYCORE_ZERO_COPY"
-SOLE, OFF = "sole", "off"
+SOLE, READ_ONLY, OFF = "sole", "read_only", "off"
 NESTED = "/"  # in the name of a message type; sequences have brackets, too
 SEQUENCE = "sequence<"
 NUMBERS = (
@@ -48,10 +48,10 @@ def install() -> None:
     rmw_manycore.pth calls this unless `VARIABLE` is `OFF`.
     """
     chosen = os.environ.get(VARIABLE) or SOLE
-    if chosen == SOLE:
+    if chosen in (SOLE, READ_ONLY):
         change_packages("arrays", (".msg",), change)
     else:
-        refusal = (refuse_rclpy(VARIABLE, chosen, SOLE, OFF),)
+        refusal = (refuse_rclpy(VARIABLE, chosen, SOLE, READ_ONLY, OFF),)
         ChangesAfterLoading.install("arrays", lambda name: refusal if name == "rclpy" else ())
 
 
@@ -81,7 +81,7 @@ def _change_class(message: Any, metaclass: Any) -> None:
 def _replace_converters(message: Any) -> None:
     fields = list(number_fields(message))
     if fields and (native := _compiled()):
-        native.replace_converters(message, fields)
+        native.replace_converters(message, fields, os.environ.get(VARIABLE) == READ_ONLY)
 
 
 def number_fields(

@@ -67,6 +67,7 @@ uint32_t enter_graph(
   EndpointEntry & entry = registry.endpoints()[taken];
   entry.topic_dsm_size = configured == nullptr ? 0 : configured->topic_dsm_size;
   entry.transfer = transfer::kind_of(configured, spec, kind);
+  entry.zero_copy = configured == nullptr ? ZeroCopy::unset : configured->zero_copy;
   try {
     const void * const block =
       kind == EndpointKind::publisher

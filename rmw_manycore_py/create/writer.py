@@ -65,6 +65,7 @@ def _topic_table(placement: Placement) -> str:
             "topic_type": topic.type,
             "receiver_cc": list(topic.receiver_clusters),
             **({"transfer": topic.transfer_text} if topic.transfer != "dsm" else {}),
+            **({"zero_copy": topic.zero_copy} if topic.zero_copy != "unset" else {}),
         }
         for topic in placement.topics
     ]

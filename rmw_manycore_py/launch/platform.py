@@ -42,6 +42,7 @@ def configured_platform(placement: Placement) -> _transport.Configurator:
                     transfer=topic.transfer,
                     priority=topic.priority,
                     synchronous=topic.synchronous,
+                    zero_copy=topic.zero_copy,
                 )
                 for topic in placement.topics
             ],

@@ -15,6 +15,7 @@ from rmw_manycore_py.native.enums import (
     Reliability,
     Transfer,
     WaitMode,
+    ZeroCopy,
 )
 
 class PlatformError(RuntimeError):
@@ -263,6 +264,7 @@ class TopicConfiguration:
         transfer: Transfer = "dsm",
         priority: int = 0,
         synchronous: bool = False,
+        zero_copy: ZeroCopy = "unset",
     ) -> None: ...
     @property
     def name(self) -> str: ...
@@ -285,6 +287,10 @@ class TopicConfiguration:
     @property
     def synchronous(self) -> bool:
         """Messages: publishing waits until the receiving clusters have the message."""
+
+    @property
+    def zero_copy(self) -> ZeroCopy:
+        """How its large messages are read."""
 
 def platforms() -> list[str]:
     """Return the names of this user's platforms, dead or alive."""

@@ -22,6 +22,9 @@ LOSSES = ("lost", "expired", "refused", "dropped")  # counters of messages that 
 # Transfer of a topic's messages to other clusters; see docs/design/transfers.md.
 Transfer = Literal["dsm", "message", "session", "async"]
 
+# How subscriptions read large messages of a topic; see docs/how-to/zero_copy.md.
+ZeroCopy = Literal["unset", "sole", "read_only", "off"]
+
 # Scan matcher; see MatcherOptions.
 Search = Literal["radius", "direct7", "direct1"]
 VoxelCovariance = Literal["pcl", "autoware", "pclomp"]

@@ -70,7 +70,10 @@ def test_every_type_as_with_copies():
 
 def test_invalid_setting_is_rejected():
     done = run("-c", "import rclpy", **{arrays.VARIABLE: "always"})
-    assert done.stderr == "MANYCORE_ZERO_COPY='always' is not valid: expected sole or off\n"
+    assert (
+        done.stderr
+        == "MANYCORE_ZERO_COPY='always' is not valid: expected sole or read_only or off\n"
+    )
     assert done.returncode == 1
 
 

@@ -10,7 +10,7 @@ namespace rmw_manycore {
 void * MessageType::create() const noexcept {
   void * const message = upstream.create();
   if (message != nullptr) {
-    interface.adopt(message);  // else it is taken by copies
+    interface.adopt(message, is_read_only);  // else it is taken by copies
   }
   return message;
 }

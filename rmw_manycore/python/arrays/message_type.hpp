@@ -28,6 +28,7 @@ struct MessageType {
   const void * type_support;
   std::vector<Field> fields;
   ArrayTypes arrays;
+  bool is_read_only;  ///< unless a topic says otherwise: taken arrays are
 
   void * create() const noexcept;
   void destroy(void * message) const noexcept;

@@ -26,12 +26,14 @@ PyObject * find_fault(PyObject *, PyObject *) {
 PyObject * replace_converters(PyObject *, PyObject * arguments) {
   PyObject * message_class = nullptr;
   PyObject * fields = nullptr;
-  if (!PyArg_ParseTuple(arguments, "O!O!", &PyType_Type, &message_class, &PyList_Type, &fields)) {
+  int is_read_only = 0;
+  if (!PyArg_ParseTuple(
+        arguments, "O!O!p", &PyType_Type, &message_class, &PyList_Type, &fields, &is_read_only)) {
     return nullptr;
   }
   auto * const type = reinterpret_cast<PyTypeObject *>(message_class);
-  const bool is_done =
-    fault != nullptr || rmw_manycore::replace_converters(type, fields, array_types);
+  const bool is_done = fault != nullptr || rmw_manycore::replace_converters(
+                                             type, fields, array_types, is_read_only != 0);
   return is_done ? Py_NewRef(Py_None) : nullptr;
 }
 

@@ -14,6 +14,7 @@ namespace {
 struct RecordArray {
   ArrayObject array;
   Lease * lease;  ///< null: the elements are in memory of Python, as of any array.array
+  bool is_read_only;
 };
 
 PyTypeObject * array_type = nullptr;  ///< array.array
@@ -31,9 +32,24 @@ void leave_record(PyObject * self, char * items) noexcept {
   std::exchange(lease_of(self), nullptr)->give_back();
 }
 
+/// Before a method that changes elements in place. False, with an exception, if it must not.
+bool may_write(PyObject * self) noexcept {
+  if (reinterpret_cast<RecordArray *>(self)->is_read_only) {
+    PyErr_SetString(
+      PyExc_TypeError,
+      "the array is read-only, since other readers may see it (zero_copy: read_only): change a "
+      "copy, such as array[:]");
+    return false;
+  }
+  return true;
+}
+
 /// Before a method that resizes. While other buffers are exported, array.array itself refuses.
 bool copy_out(PyObject * self) {
   ArrayObject & array = as_array(self);
+  if (!may_write(self)) {
+    return false;
+  }
   if (lease_of(self) == nullptr || array.exports > 1) {
     return true;
   }
@@ -55,17 +71,25 @@ void destroy(PyObject * self) {
   upstream<destructor>(Py_tp_dealloc)(self);
 }
 
-/// array.array's method of this name, after copy_out().
 template<const char * name>
-PyObject * resize(PyObject * self, PyObject * arguments, PyObject * named) {
-  if (!copy_out(self)) {
-    return nullptr;
-  }
+PyObject * call(PyObject * self, PyObject * arguments, PyObject * named) {
   const Owned method(PyObject_GetAttrString(reinterpret_cast<PyObject *>(array_type), name));
   // CPython 3.11 reads the type, which its documentation calls optional.
   const Owned bound(
     method ? PyObject_CallMethod(method.get(), "__get__", "OO", self, Py_TYPE(self)) : nullptr);
   return bound ? PyObject_Call(bound.get(), arguments, named) : nullptr;
+}
+
+/// array.array's method of this name, after copy_out().
+template<const char * name>
+PyObject * resize(PyObject * self, PyObject * arguments, PyObject * named) {
+  return copy_out(self) ? call<name>(self, arguments, named) : nullptr;
+}
+
+/// array.array's method of this name, which changes elements in place.
+template<const char * name>
+PyObject * change(PyObject * self, PyObject * arguments, PyObject * named) {
+  return may_write(self) ? call<name>(self, arguments, named) : nullptr;
 }
 
 /// As array.array, so that pickles load without this module.
@@ -83,7 +107,7 @@ PyObject * repeat(PyObject * self, Py_ssize_t count) {
 }
 
 int assign_item(PyObject * self, Py_ssize_t index, PyObject * value) {
-  if (value == nullptr && !copy_out(self)) {
+  if (!may_write(self) || (value == nullptr && !copy_out(self))) {
     return -1;
   }
   return upstream<ssizeobjargproc>(Py_sq_ass_item)(self, index, value);
@@ -109,23 +133,45 @@ bool keeps_length(PyObject * self, PyObject * key, PyObject * value) {
 }
 
 int assign(PyObject * self, PyObject * key, PyObject * value) {
-  if (!keeps_length(self, key, value) && !copy_out(self)) {
+  if (!may_write(self) || (!keeps_length(self, key, value) && !copy_out(self))) {
     return -1;
   }
   return upstream<objobjargproc>(Py_mp_ass_subscript)(self, key, value);
 }
 
+int get_buffer(PyObject * self, Py_buffer * view, int flags) {
+  const bool is_read_only = reinterpret_cast<RecordArray *>(self)->is_read_only;
+  if (is_read_only && (flags & PyBUF_WRITABLE) != 0) {
+    view->obj = nullptr;
+    PyErr_SetString(PyExc_BufferError, "the array is read-only (zero_copy: read_only)");
+    return -1;
+  }
+  const int result = array_type->tp_as_buffer->bf_getbuffer(self, view, flags);
+  if (result == 0 && is_read_only) {
+    view->readonly = 1;
+  }
+  return result;
+}
+
+template<const char * name>
+PyMethodDef method(PyCFunctionWithKeywords function) {
+  return {
+    name, reinterpret_cast<PyCFunction>(reinterpret_cast<void *>(function)),
+    METH_VARARGS | METH_KEYWORDS, "As of array.array."};
+}
 template<const char * name>
 PyMethodDef resizing() {
-  return {
-    name, reinterpret_cast<PyCFunction>(reinterpret_cast<void *>(resize<name>)),
-    METH_VARARGS | METH_KEYWORDS, "As of array.array."};
+  return method<name>(resize<name>);
+}
+template<const char * name>
+PyMethodDef changing() {
+  return method<name>(change<name>);
 }
 
 constexpr char append[] = "append", clear[] = "clear", extend[] = "extend",
                frombytes[] = "frombytes", fromfile[] = "fromfile", fromlist[] = "fromlist",
                fromunicode[] = "fromunicode", insert[] = "insert", pop[] = "pop",
-               remove[] = "remove";
+               remove[] = "remove", byteswap[] = "byteswap", reverse[] = "reverse";
 
 /// Those that this Python's array.array has.
 PyMethodDef * methods() {
@@ -133,7 +179,7 @@ PyMethodDef * methods() {
   for (const PyMethodDef & method :
        {resizing<append>(), resizing<clear>(), resizing<extend>(), resizing<frombytes>(),
         resizing<fromfile>(), resizing<fromlist>(), resizing<fromunicode>(), resizing<insert>(),
-        resizing<pop>(), resizing<remove>()}) {
+        resizing<pop>(), resizing<remove>(), changing<byteswap>(), changing<reverse>()}) {
     if (PyObject_HasAttrString(reinterpret_cast<PyObject *>(array_type), method.ml_name)) {
       methods.push_back(method);
     }
@@ -155,6 +201,8 @@ PyTypeObject * make_record_array_type(PyTypeObject * base) {
     {Py_sq_inplace_repeat, reinterpret_cast<void *>(repeat)},
     {Py_sq_ass_item, reinterpret_cast<void *>(assign_item)},
     {Py_mp_ass_subscript, reinterpret_cast<void *>(assign)},
+    {Py_bf_getbuffer, reinterpret_cast<void *>(get_buffer)},
+    {Py_bf_releasebuffer, reinterpret_cast<void *>(base->tp_as_buffer->bf_releasebuffer)},
     {0, nullptr}};
   // The name is a part of what repr() returns.
   PyType_Spec spec = {
@@ -165,19 +213,20 @@ PyTypeObject * make_record_array_type(PyTypeObject * base) {
 }
 
 PyObject * make_record_array(
-  PyTypeObject * type, PyObject * like, void * items, size_t count, Lease & lease) {
+  PyTypeObject * type, PyObject * like, const RecordItems & items, Lease & lease) {
   PyObject * const self = type->tp_alloc(type, 0);
   if (self == nullptr) {
     return nullptr;
   }
   ArrayObject & array = as_array(self);
-  array.items = static_cast<char *>(items);
-  array.allocated = static_cast<Py_ssize_t>(count);
+  array.items = static_cast<char *>(items.items);
+  array.allocated = static_cast<Py_ssize_t>(items.count);
   array.description = as_array(like).description;
   array.exports = 1;
-  Py_SET_SIZE(&array.head, static_cast<Py_ssize_t>(count));
+  Py_SET_SIZE(&array.head, static_cast<Py_ssize_t>(items.count));
   lease.keep();
   lease_of(self) = &lease;
+  reinterpret_cast<RecordArray *>(self)->is_read_only = items.is_read_only;
   return self;
 }
 

@@ -13,9 +13,16 @@ namespace rmw_manycore {
 /// copy the elements to memory of Python. Null, with an exception, on failure.
 PyTypeObject * make_record_array_type(PyTypeObject * array_type);
 
-/// An array over `count` elements in the lease's record; `like` is an array.array with its type
-/// code. Null, with an exception, on failure.
+/// Elements of an array in a record.
+struct RecordItems {
+  void * items;
+  size_t count;
+  bool is_read_only;  ///< what would change them raises an exception
+};
+
+/// An array over elements in the lease's record; `like` is an array.array with its type code. Null,
+/// with an exception, on failure.
 PyObject * make_record_array(
-  PyTypeObject * type, PyObject * like, void * items, size_t count, Lease & lease);
+  PyTypeObject * type, PyObject * like, const RecordItems & items, Lease & lease);
 
 }  // namespace rmw_manycore

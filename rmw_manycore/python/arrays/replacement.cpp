@@ -74,7 +74,8 @@ private:
 }  // namespace
 
 bool replace_converters(
-  PyTypeObject * message_class, PyObject * described, const ArrayTypes & arrays) {
+  PyTypeObject * message_class, PyObject * described, const ArrayTypes & arrays,
+  bool is_read_only) {
   const BorrowingInterface * const interface = find_interface();
   if (interface == nullptr || type_count == max_types) {
     return true;
@@ -95,8 +96,8 @@ bool replace_converters(
   }
   static const auto all = all_converters(std::make_index_sequence<max_types>());
   const Converters & ours = all[type_count];
-  types[type_count++] =
-    new MessageType{*interface, upstream, message_class, type_support, std::move(fields), arrays};
+  types[type_count++] = new MessageType{*interface,        upstream, message_class, type_support,
+                                        std::move(fields), arrays,   is_read_only};
   Py_INCREF(message_class);
   return create.replace(ours.create) && destroy.replace(ours.destroy) &&
          from_python.replace(ours.from_python) && to_python.replace(ours.to_python);

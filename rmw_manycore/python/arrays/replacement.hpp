@@ -10,6 +10,7 @@ namespace rmw_manycore {
 /// Replaces the converters of a message class, which has imported its type support; `fields` as
 /// read_fields() takes them. Without librmw_manycore.so, or beyond the number of types, upstream's
 /// stay. False, with an exception, on failure.
-bool replace_converters(PyTypeObject * message_class, PyObject * fields, const ArrayTypes & arrays);
+bool replace_converters(
+  PyTypeObject * message_class, PyObject * fields, const ArrayTypes & arrays, bool is_read_only);
 
 }  // namespace rmw_manycore

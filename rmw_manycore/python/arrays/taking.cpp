@@ -60,7 +60,7 @@ bool set_borrowed(
     PyErr_SetString(PyExc_RuntimeError, "a taken message can be converted once");
     return false;
   }
-  const bool is_sole = interface.is_sole(hold);
+  const Access access = interface.access(hold);
   const uint8_t * const begin = sequences[0].data;
   const Field * const last = find(fields, sequences[count - 1].path);
   const uint8_t * const end =
@@ -69,13 +69,14 @@ bool set_borrowed(
   bool is_set = last != nullptr;
   for (size_t i = 0; is_set && i < count; ++i) {
     const Field * const field = find(fields, sequences[i].path);
-    is_set =
-      field != nullptr &&
-      set(
-        object, *field,
-        is_sole ? Owned(make_record_array(
-                    arrays.in_record, field->empty, sequences[i].data, sequences[i].count, lease))
-                : copy(*field, sequences[i]));
+    is_set = field != nullptr &&
+             set(
+               object, *field,
+               access == Access::copy
+                 ? copy(*field, sequences[i])
+                 : Owned(make_record_array(
+                     arrays.in_record, field->empty,
+                     {sequences[i].data, sequences[i].count, access == Access::read}, lease)));
   }
   lease.give_back();
   return is_set;

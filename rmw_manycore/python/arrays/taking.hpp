@@ -12,7 +12,7 @@
 namespace rmw_manycore {
 
 /// Gives the converted `object` the sequences that `message` left in its record: as arrays in the
-/// record if nothing else will read it, else as copies. False, with an exception, on failure.
+/// record if their access allows it, else as copies. False, with an exception, on failure.
 bool set_borrowed(
   const BorrowingInterface & interface, const ArrayTypes & arrays,
   const std::vector<Field> & fields, void * message, PyObject * object);

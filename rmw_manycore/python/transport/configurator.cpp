@@ -55,7 +55,8 @@ private:
 
 void init_topic(
   TopicConfiguration * topic, const std::string & name, uint32_t id, uint32_t dsm_size_bytes,
-  uint64_t receiver_clusters, const std::string & transfer, uint8_t priority, bool synchronous) {
+  uint64_t receiver_clusters, const std::string & transfer, uint8_t priority, bool synchronous,
+  const std::string & zero_copy) {
   if (priority >= transfer_priorities) {
     throw nb::value_error("priority: expected 0 to 7");
   }
@@ -63,7 +64,8 @@ void init_topic(
   settings.kind = from_word<Transfer>(transfer);
   settings.priority = priority;
   settings.synchronous = synchronous ? 1 : 0;
-  new (topic) TopicConfiguration{name, id, dsm_size_bytes, receiver_clusters, settings};
+  new (topic) TopicConfiguration{
+    name, id, dsm_size_bytes, receiver_clusters, settings, from_word<ZeroCopy>(zero_copy)};
 }
 
 }  // namespace
@@ -73,7 +75,7 @@ void bind_configurator(nb::module_ & module) {
     .def(
       "__init__", &init_topic, nb::arg("name"), nb::kw_only(), nb::arg("id"),
       nb::arg("dsm_size_bytes"), nb::arg("receiver_clusters"), nb::arg("transfer") = "dsm",
-      nb::arg("priority") = 0, nb::arg("synchronous") = false)
+      nb::arg("priority") = 0, nb::arg("synchronous") = false, nb::arg("zero_copy") = "unset")
     .def_prop_ro("name", name<TopicConfiguration>(&TopicConfiguration::name))
     .def_ro("id", &TopicConfiguration::id)
     .def_ro("dsm_size_bytes", &TopicConfiguration::dsm_size_bytes)
@@ -82,6 +84,8 @@ void bind_configurator(nb::module_ & module) {
       "transfer", [](const TopicConfiguration & topic) { return word_of(topic.transfer.kind); })
     .def_prop_ro(
       "priority", [](const TopicConfiguration & topic) { return topic.transfer.priority; })
+    .def_prop_ro(
+      "zero_copy", [](const TopicConfiguration & topic) { return word_of(topic.zero_copy); })
     .def_prop_ro("synchronous", [](const TopicConfiguration & topic) {
       return topic.transfer.synchronous != 0;
     });

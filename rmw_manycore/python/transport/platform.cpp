@@ -75,7 +75,7 @@ public:
       const TopicEntry & topic = registry.topic(i);
       rows.push_back(
         {text_of(topic.name), topic.topic_id, topic.topic_dsm_size, topic.receiver_clusters,
-         topic.transfer});
+         topic.transfer, topic.zero_copy});
     }
     return rows;
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "python/words.hpp"
+#include "transport/layout/chunk_layout.hpp"
 #include "transport/layout/endpoint.hpp"
 #include "transport/layout/transfer_layout.hpp"
 #include "transport/waiting/waiter.hpp"
@@ -55,6 +56,12 @@ template<>
 struct Words<Transfer> {
   static constexpr const char * name = "transfer";
   static constexpr std::array<const char *, 4> all = {"dsm", "message", "session", "async"};
+};
+
+template<>
+struct Words<ZeroCopy> {
+  static constexpr const char * name = "zero_copy";
+  static constexpr std::array<const char *, 4> all = {"unset", "sole", "read_only", "off"};
 };
 
 }  // namespace manycore::python

@@ -8,9 +8,9 @@ Adopted & Adopted::messages() {
   return adopted;
 }
 
-void Adopted::add(const void * message) {
+void Adopted::add(const void * message, bool is_read_only) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  messages_[message] = {};
+  messages_[message] = {is_read_only, {}};
   count_.store(messages_.size(), std::memory_order_relaxed);
 }
 
@@ -22,7 +22,7 @@ void Adopted::remove(const void * message) noexcept {
 }
 
 /// Relaxed: a message is handed from thread to thread in a way that orders memory.
-Borrowed * Adopted::find(const void * message) noexcept {
+AdoptedMessage * Adopted::find(const void * message) noexcept {
   if (count_.load(std::memory_order_relaxed) == 0) {
     return nullptr;
   }

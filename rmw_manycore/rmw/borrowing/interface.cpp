@@ -10,9 +10,9 @@
 namespace rmw_manycore {
 namespace {
 
-bool adopt(void * message) noexcept {
+bool adopt(void * message, bool is_read_only) noexcept {
   try {
-    Adopted::messages().add(message);
+    Adopted::messages().add(message, is_read_only);
     return true;
   } catch (const std::exception &) {
     return false;
@@ -22,17 +22,17 @@ bool adopt(void * message) noexcept {
 void forget(void * message) noexcept { Adopted::messages().remove(message); }
 
 const BorrowedSequence * borrowed(const void * message, size_t * count) noexcept {
-  const Borrowed * const found = Adopted::messages().find(message);
-  *count = found == nullptr ? 0 : found->sequences.size();
-  return *count == 0 ? nullptr : found->sequences.data();
+  const AdoptedMessage * const found = Adopted::messages().find(message);
+  *count = found == nullptr ? 0 : found->borrowed.sequences.size();
+  return *count == 0 ? nullptr : found->borrowed.sequences.data();
 }
 
 RecordHold * take_hold(void * message) noexcept {
-  Borrowed * const found = Adopted::messages().find(message);
-  return found == nullptr ? nullptr : found->hold.release();
+  AdoptedMessage * const found = Adopted::messages().find(message);
+  return found == nullptr ? nullptr : found->borrowed.hold.release();
 }
 
-bool is_sole(const RecordHold * hold) noexcept { return hold->hold.is_sole(); }
+Access access(const RecordHold * hold) noexcept { return hold->access; }
 
 void give_back(RecordHold * hold) noexcept { delete hold; }
 
@@ -66,14 +66,14 @@ constexpr bool is_laid_out_alike =
 static_assert(is_laid_out_alike<rosidl_runtime_c__uint8__Sequence>);
 static_assert(is_laid_out_alike<rosidl_runtime_c__double__Sequence>);
 
-constexpr BorrowingInterface functions{adopt,   forget,    borrowed,  take_hold,
-                                       is_sole, give_back, offset_of, lend};
+constexpr BorrowingInterface functions{adopt,  forget,    borrowed,  take_hold,
+                                       access, give_back, offset_of, lend};
 
 }  // namespace
 }  // namespace rmw_manycore
 
 // NOLINTNEXTLINE(readability-identifier-naming): exported like the rmw interface
 extern "C" __attribute__((visibility("default"))) const rmw_manycore::BorrowingInterface *
-rmw_manycore_borrowing_1() {
+rmw_manycore_borrowing_2() {
   return &rmw_manycore::functions;
 }

@@ -12,6 +12,13 @@ constexpr size_t min_borrowed_bytes = size_t{64} << 10;
 /// Keeps the bytes of a record in place, see manycore::Hold.
 struct RecordHold;
 
+/// What the holder of a record may do with its bytes.
+enum class Access : uint8_t {
+  copy,  ///< for want of more: other readers may write into theirs
+  read,
+  write,  ///< nothing else reads them
+};
+
 /// The elements of a large sequence, where they lie in the record.
 struct BorrowedSequence {
   const char * path;  ///< as NumberSequence::path
@@ -23,8 +30,9 @@ struct BorrowedSequence {
 /// function below. Thread-safe; nothing throws.
 struct BorrowingInterface {
   /// From now on rmw_take leaves large sequences of numbers of `message` in the record, if it can:
-  /// the message gets a few elements of them. False for want of memory.
-  bool (*adopt)(void * message) noexcept;
+  /// the message gets a few elements of them. `is_read_only` unless the topic says otherwise:
+  /// whether its owner only reads them. False for want of memory.
+  bool (*adopt)(void * message, bool is_read_only) noexcept;
   /// Ends this, and gives back the record if it is still held. Before the message is destroyed.
   void (*forget)(void * message) noexcept;
 
@@ -32,8 +40,7 @@ struct BorrowingInterface {
   const BorrowedSequence * (*borrowed)(const void * message, size_t * count) noexcept;
   /// Hands the message's hold to the caller; null if it borrows nothing.
   RecordHold * (*take_hold)(void * message) noexcept;
-  /// True if the holder may write into the record.
-  bool (*is_sole)(const RecordHold * hold) noexcept;
+  Access (*access)(const RecordHold * hold) noexcept;
   void (*give_back)(RecordHold * hold) noexcept;
 
   /// Place of a sequence in messages of a type (rosidl_message_type_support_t), SIZE_MAX if it has
@@ -43,7 +50,7 @@ struct BorrowingInterface {
   void (*lend)(void * message, size_t offset, void * data, size_t count) noexcept;
 };
 
-constexpr char borrowing_function[] = "rmw_manycore_borrowing_1";
+constexpr char borrowing_function[] = "rmw_manycore_borrowing_2";
 using BorrowingFunction = const BorrowingInterface * (*)();
 
 }  // namespace rmw_manycore

@@ -9,10 +9,15 @@
 namespace rmw_manycore {
 namespace {
 
+bool is_read_only(manycore::ZeroCopy of_topic, bool of_program) noexcept {
+  return of_topic == manycore::ZeroCopy::unset ? of_program
+                                               : of_topic == manycore::ZeroCopy::read_only;
+}
+
 /// False if everything has to be copied.
 bool borrow(
   manycore::Claim & claim, const Cdr & cdr, void * message,
-  const std::shared_ptr<manycore::Process> & process, Borrowed & borrowed) {
+  const std::shared_ptr<manycore::Process> & process, AdoptedMessage & adopted) {
   const CutCdr cut = cdr.cut(claim.data(), claim.size(), min_borrowed_bytes);
   if (cut.sequences.empty()) {
     return false;
@@ -30,12 +35,15 @@ bool borrow(
     found.paths.push_back(sequence.field->path);
     found.sequences.push_back({found.paths.back().c_str(), record + sequence.at, sequence.count});
   }
-  found.hold.reset(new RecordHold{process, std::move(*hold)});
+  const Access access = is_read_only(claim.zero_copy(), adopted.is_read_only) ? Access::read
+                        : hold->is_sole()                                     ? Access::write
+                                                                              : Access::copy;
+  found.hold.reset(new RecordHold{process, std::move(*hold), access});
   cdr.deserialize(cut.bytes.data(), cut.bytes.size(), message);
-  if (found.hold->hold.is_sole()) {  // else Python's message gets a copy
+  if (access != Access::copy) {
     claim.count_in_place();
   }
-  borrowed = std::move(found);
+  adopted.borrowed = std::move(found);
   return true;
 }
 
@@ -44,10 +52,12 @@ bool borrow(
 void read(
   manycore::Claim & claim, const Cdr & cdr, void * message,
   const std::shared_ptr<manycore::Process> & process) {
-  Borrowed * const borrowed = Adopted::messages().find(message);
-  if (borrowed != nullptr) {
-    *borrowed = {};  // of a message that was taken into it before
-    if (claim.size() >= min_borrowed_bytes && borrow(claim, cdr, message, process, *borrowed)) {
+  AdoptedMessage * const adopted = Adopted::messages().find(message);
+  if (adopted != nullptr) {
+    adopted->borrowed = {};  // of a message that was taken into it before
+    const bool is_large = claim.size() >= min_borrowed_bytes;
+    const bool is_off = claim.zero_copy() == manycore::ZeroCopy::off;
+    if (is_large && !is_off && borrow(claim, cdr, message, process, *adopted)) {
       return;
     }
   }

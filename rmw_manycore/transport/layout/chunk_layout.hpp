@@ -13,6 +13,14 @@ constexpr uint64_t min_chunk_message_bytes = 64 << 10;
 /// Holds that a chunk has room for; further readers copy.
 constexpr uint32_t max_holders = 15;
 
+/// How subscriptions read large messages of a topic, from the topic table.
+enum class ZeroCopy : uint8_t {
+  unset,      ///< as the program chooses
+  sole,       ///< a sole reader in place, and writable; others copy
+  read_only,  ///< each reader in place
+  off,        ///< each reader copies
+};
+
 constexpr uint32_t chunk_magic = 0x4d43'434b;  // "MCCK"
 
 /// Head of a chunk, the memory of one record. The bytes of the record follow it at `chunk_data`, so

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include "platform/recoverable_mutex.hpp"
+#include "transport/layout/chunk_layout.hpp"
 #include "transport/layout/endpoint.hpp"
 #include "transport/layout/segment_layout.hpp"
 #include "transport/layout/slot_set.hpp"
@@ -133,7 +134,8 @@ struct EndpointEntry {
   Transfer transfer;  ///< of the topic, from the topic table
   /// Its process was killed. Stored before the slot ceases to be live.
   std::atomic<uint8_t> died;
-  uint8_t reserved[6];
+  ZeroCopy zero_copy;  ///< of the topic, from the topic table
+  uint8_t reserved[5];
   EndpointCounters counters;
   char topic[name_bytes];
   char type[name_bytes];
@@ -149,9 +151,11 @@ struct TopicEntry {
   uint32_t topic_dsm_size;
   uint64_t receiver_clusters;  ///< bit c - 1 = cluster c
   TransferSettings transfer;
+  ZeroCopy zero_copy;
+  uint8_t reserved[7];
   char name[name_bytes];
 };
-static_assert(sizeof(TopicEntry) == 288);
+static_assert(sizeof(TopicEntry) == 296);
 
 /// A process that ended without leaving the platform. Its slot may belong to another process by
 /// now.

@@ -114,6 +114,7 @@ void Registry::create(
     entry.topic_dsm_size = topics[i].dsm_size_bytes;
     entry.receiver_clusters = topics[i].receiver_clusters;
     entry.transfer = topics[i].transfer;
+    entry.zero_copy = topics[i].zero_copy;
   }
   header.segment.magic.store(registry_magic, std::memory_order_release);
 }

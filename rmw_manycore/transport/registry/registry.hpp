@@ -93,6 +93,7 @@ struct TopicConfiguration {
   uint32_t dsm_size_bytes = 0;  ///< 0 = grows
   uint64_t receiver_clusters = 0;
   TransferSettings transfer{};
+  ZeroCopy zero_copy = ZeroCopy::unset;
 };
 
 /// The platform's table of processes, nodes, endpoints and topics. Changed under its robust lock,

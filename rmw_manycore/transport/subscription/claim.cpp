@@ -34,6 +34,8 @@ Claim::~Claim() {
   }
 }
 
+ZeroCopy Claim::zero_copy() const noexcept { return subscription_.impl_->entry.zero_copy; }
+
 std::optional<Hold> Claim::hold() noexcept {
   Subscription::Impl & impl = *subscription_.impl_;
   if (chunk_ == nullptr || impl.membership.is_inherited() || !impl.holds.may_take(impl.entry.qos)) {

@@ -40,6 +40,8 @@ public:
   size_t size() const noexcept { return size_; }
   const RecordInfo & info() const noexcept { return info_; }
 
+  /// How the topic's records are to be read.
+  ZeroCopy zero_copy() const noexcept;
   /// Keeps the bytes in place after this claim. Nothing where the record lies in the ring, as small
   /// ones do, or where too many are held: then copy.
   std::optional<Hold> hold() noexcept;

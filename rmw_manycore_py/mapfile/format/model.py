@@ -117,12 +117,18 @@ class TopicSection(Section):
     synchronous: StrictBool = Field(
         default=False, description="Publishing waits until other clusters have the message"
     )
+    zero_copy: Literal["sole", "read_only", "off"] | None = Field(
+        default=None, description="How rclpy reads large arrays; default: $MANYCORE_ZERO_COPY"
+    )
 
     @model_validator(mode="after")
     def _check_transfer(self) -> Self:
         if self.transfer != "dsm" and self.topic_dsm_size is None:
             expected = f"a topic_dsm_size, as the topic is transferred ({self.transfer})"
             raise refusal(expected, found=None, name="topic_dsm_size")
+        if self.zero_copy not in (None, "off") and self.topic_dsm_size is not None:
+            expected = "off, or no topic_dsm_size beside it: such messages are copied"
+            raise refusal(expected, found=self.zero_copy, name="zero_copy")
         if self.transfer != "message":
             expected = f"transfer: message beside it, not {self.transfer}"
             if self.priority is not None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from rmw_manycore_py.mapfile.placing.parameters import GeneratedFile, Source, words_of
-from rmw_manycore_py.native.enums import Transfer
+from rmw_manycore_py.native.enums import Transfer, ZeroCopy
 from rmw_manycore_py.platform.smem import DEFAULT_DEPTH
 from rmw_manycore_py.platform.topology import Core, Topology, room_for_topic_dsms
 from rmw_manycore_py.platform.transfers import transfer_text
@@ -151,6 +151,7 @@ class TopicEntry:
     transfer: Transfer = "dsm"
     priority: int = 0
     synchronous: bool = False
+    zero_copy: ZeroCopy = "unset"
 
     @property
     def transfer_text(self) -> str:

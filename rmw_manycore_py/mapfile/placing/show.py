@@ -132,6 +132,7 @@ def _topic(topic: TopicEntry) -> dict[str, Any]:
         "transfer": topic.transfer,
         "priority": topic.priority,
         "synchronous": topic.synchronous,
+        "zero_copy": topic.zero_copy,
         "publisher_clusters": list(topic.publisher_clusters),
         "receiver_clusters": list(topic.receiver_clusters),
     }

@@ -37,17 +37,18 @@ def topic_table(mapfile: Mapfile, nodes: Sequence[PlacedNode]) -> tuple[TopicEnt
                 topic_dsm_size=section.topic_dsm_size if section else None,
                 publishers=publishers,
                 subscribers=subscribers,
-                **(_transfer(section) if section else {}),
+                **(_settings(section) if section else {}),
             )
         )
     return tuple(entries)
 
 
-def _transfer(section: TopicSection) -> dict[str, Any]:
+def _settings(section: TopicSection) -> dict[str, Any]:
     return {
         "transfer": section.transfer,
         "priority": section.priority or 0,
         "synchronous": section.synchronous,
+        "zero_copy": section.zero_copy or "unset",
     }
 
 

@@ -159,6 +159,13 @@ def test_a_transferred_topic_takes_memory_in_each_receiving_cluster(resolved: Ch
     assert [memory.used >> 20 for memory in placement.memory[:4]] == [1, 2, 2, 0]
 
 
+def test_topics_say_how_large_messages_are_read(resolved: Check) -> None:
+    placement = resolved(
+        "topics: {chatter: {zero_copy: read_only}}\nnodes: {a: {cluster: 1, script: talker.py}}\n"
+    )
+    assert placement.topics[0].zero_copy == "read_only"
+
+
 def test_sessions_of_a_cluster_are_limited(resolved: Check) -> None:
     text = (
         "platform: coolidge\n"
