@@ -136,6 +136,17 @@ def test_loans_of_one_publisher_do_not_hold_each_other_up(node, publisher, lende
     assert receive()[-1].x == 1
 
 
+@pytest.mark.skipif(not IS_MANYCORE, reason="others lend another message")
+def test_a_loan_is_not_cleared(lender):
+    """That would cost as much as a copy of the message."""
+    loan = lender.borrow()[1]
+    point_at(loan).x = 5
+    assert lender.return_unpublished(loan) == OK
+    again = lender.borrow()[1]
+    assert (again.value, point_at(again).x) == (loan.value, 5)
+    assert lender.return_unpublished(again) == OK
+
+
 @pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS crashes")
 def test_a_loan_is_given_back_once(lender):
     loan = lender.borrow()[1]

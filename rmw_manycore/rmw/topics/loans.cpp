@@ -2,7 +2,6 @@
 #include "rmw/topics/loans.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 namespace rmw_manycore {
 
@@ -16,11 +15,10 @@ Loans::Messages::const_iterator Loans::find(const void * message) const {
 void * Loans::lend() {
   const std::lock_guard lock(mutex_);
   if (free_.empty()) {
-    free_.push_back(std::make_unique<std::byte[]>(message_bytes_));
+    free_.emplace_back(new std::byte[message_bytes_]);
   }
   lent_.push_back(std::move(free_.back()));
   free_.pop_back();
-  std::memset(lent_.back().get(), 0, message_bytes_);
   return lent_.back().get();
 }
 
