@@ -15,11 +15,12 @@ NATIVE = Path(__file__).parents[2] / "rmw_manycore"
 # Native directories that each one may include, besides itself.
 NATIVE_BELOW = {
     "platform": set(),
-    "transport": {"platform"},
-    "rmw": {"platform", "transport"},
+    "virtual_time": {"platform"},
+    "transport": {"platform", "virtual_time"},
+    "rmw": {"platform", "virtual_time", "transport"},
     "ndt": {"platform"},
-    "python": {"platform", "transport", "ndt"},
-    "bench": {"platform", "transport", "ndt", "python"},
+    "python": {"platform", "virtual_time", "transport", "ndt"},
+    "bench": {"platform", "virtual_time", "transport", "ndt", "python"},
 }
 # Headers that others may include beside.
 OPEN = {"rmw/borrowing/interface.hpp": {"python"}}  # what the library does for a Python module
@@ -30,6 +31,7 @@ FOLDERS = {
         *("layout", "trace", "registry", "peers", "queue", "transfer", "topic_dsm", "qos"),
         "matching",
         *("notification", "movers", "lifecycle", "waiting", "publisher", "subscription"),
+        "timekeeping",
     ],
     "rmw": [
         *("common", "serialization", "borrowing", "events", "context", "qos", "graph", "topics"),

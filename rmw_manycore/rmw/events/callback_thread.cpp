@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "platform/blocked_signals.hpp"
-#include "platform/clock.hpp"
+#include "virtual_time/door.hpp"
 
 namespace rmw_manycore {
 
@@ -182,7 +182,7 @@ void CallbackThread::run() noexcept {
     manycore::CallbackMarks::Taken marks = manycore::CallbackMarks::everything();
     if (!looks_at_all) {
       marks = waiters_.callback_marks().take();
-      marks.events = marks.events || manycore::monotonic_ns() >= due_ns_;
+      marks.events = marks.events || manycore::qos_now_ns() >= due_ns_;
     }
     {
       const std::lock_guard turn(turn_);

@@ -1,11 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-#include "platform/clock.hpp"
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
 #include "rmw/rmw.h"
 #include "rmw/services/client.hpp"
 #include "rmw/services/service.hpp"
 #include "rmw/topics/message_info.hpp"
+#include "virtual_time/door.hpp"
 
 rmw_ret_t rmw_send_request(
   const rmw_client_t * client, const void * ros_request, int64_t * sequence_id) {
@@ -18,7 +18,7 @@ rmw_ret_t rmw_send_request(
   return rmw_manycore::guarded([&] {
     auto & asking = rmw_manycore::Client::of(client);
     const rmw_manycore::Cdr & cdr = asking.type().request;
-    const int64_t now_ns = manycore::realtime_ns();
+    const int64_t now_ns = manycore::publish_now_ns();
     manycore::Draft draft = asking.requests().draft(cdr.size_bound(ros_request));
     const size_t size = cdr.serialize(ros_request, draft.data(), draft.capacity());
     const manycore::Correlation correlation = asking.next_request();

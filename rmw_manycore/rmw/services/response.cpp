@@ -1,11 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-#include "platform/clock.hpp"
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
 #include "rmw/rmw.h"
 #include "rmw/services/client.hpp"
 #include "rmw/services/service.hpp"
 #include "rmw/topics/message_info.hpp"
+#include "virtual_time/door.hpp"
 
 rmw_ret_t rmw_send_response(
   const rmw_service_t * service, rmw_request_id_t * request_header, void * ros_response) {
@@ -18,7 +18,7 @@ rmw_ret_t rmw_send_response(
   return rmw_manycore::guarded([&] {
     auto & serving = rmw_manycore::Service::of(service);
     const rmw_manycore::Cdr & cdr = serving.type().response;
-    const int64_t now_ns = manycore::realtime_ns();
+    const int64_t now_ns = manycore::publish_now_ns();
     manycore::Draft draft = serving.replies().draft(cdr.size_bound(ros_response));
     const size_t size = cdr.serialize(ros_response, draft.data(), draft.capacity());
     serving.replies().publish(

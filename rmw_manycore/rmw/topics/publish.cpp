@@ -1,12 +1,12 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include <cstring>
 
-#include "platform/clock.hpp"
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
 #include "rmw/common/tracepoints.hpp"
 #include "rmw/rmw.h"
 #include "rmw/topics/publisher.hpp"
+#include "virtual_time/door.hpp"
 
 using rmw_manycore::Publisher;
 
@@ -29,7 +29,7 @@ rmw_ret_t rmw_publish(
   // Implementation: serializes directly into the topic DSM
   return rmw_manycore::guarded([&] {
     Publisher & sender = Publisher::of(publisher);
-    const int64_t now_ns = manycore::realtime_ns();
+    const int64_t now_ns = manycore::publish_now_ns();
     trace_publish(publisher, ros_message, now_ns);
     manycore::Draft draft = sender.outbox().draft(sender.cdr().size_bound(ros_message));
     const size_t size = sender.cdr().serialize(ros_message, draft.data(), draft.capacity());
@@ -48,7 +48,7 @@ rmw_ret_t rmw_publish_serialized_message(
   // Implementation
   return rmw_manycore::guarded([&] {
     rmw_manycore::Outbox & outbox = Publisher::of(publisher).outbox();
-    const int64_t now_ns = manycore::realtime_ns();
+    const int64_t now_ns = manycore::publish_now_ns();
     trace_publish(publisher, serialized_message, now_ns);
     const size_t size = serialized_message->buffer_length;
     manycore::Draft draft = outbox.draft(size);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "platform/clock.hpp"
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
 #include "rmw/rmw.h"
@@ -10,6 +9,7 @@
 #include "rmw/waiting/sleep.hpp"
 #include "rmw/waiting/wait_set.hpp"
 #include "rmw/waiting/waited.hpp"
+#include "virtual_time/door.hpp"
 
 namespace rmw_manycore {
 namespace {
@@ -20,7 +20,7 @@ std::optional<int64_t> deadline_of(const rmw_time_t * timeout) noexcept {
     return std::nullopt;
   }
   const int64_t timeout_ns = rmw_time_total_nsec(*timeout);
-  const int64_t now_ns = manycore::monotonic_ns();
+  const int64_t now_ns = manycore::qos_now_ns();
   if (timeout_ns > INT64_MAX - now_ns) {
     return std::nullopt;
   }
@@ -64,6 +64,19 @@ Ended sleep_until_ready(
   }
 }
 
+/// In virtual time each wait is a turn's end, also one that finds something ready.
+void let_others_go_first(const Waited & waited, bool poll) {
+  const manycore::virtual_time::Door * const door = manycore::virtual_time::door();
+  if (door == nullptr) {
+    return;
+  }
+  door->elapse();
+  const bool is_any_ready = waited.any_ready();
+  if (poll || is_any_ready) {
+    door->yield(!is_any_ready);
+  }
+}
+
 }  // namespace
 }  // namespace rmw_manycore
 
@@ -92,6 +105,7 @@ rmw_ret_t rmw_wait(
       wait_timeout == nullptr ? UINT64_MAX
                               : static_cast<uint64_t>(rmw_time_total_nsec(*wait_timeout)));
     const bool poll = wait_timeout != nullptr && rmw_time_total_nsec(*wait_timeout) == 0;
+    rmw_manycore::let_others_go_first(waited, poll);
     auto ended = poll ? rmw_manycore::Ended::by_timeout : rmw_manycore::Ended::woken;
     if (!poll && !waited.any_ready()) {
       ended =

@@ -5,8 +5,8 @@
 #include <atomic>
 #include <cstdint>
 
-#include "platform/clock.hpp"
 #include "transport/layout/endpoint.hpp"
+#include "virtual_time/door.hpp"
 
 namespace manycore {
 
@@ -55,7 +55,7 @@ public:
   }
 
 private:
-  static uint64_t now() noexcept { return static_cast<uint64_t>(monotonic_ns()); }
+  static uint64_t now() noexcept { return static_cast<uint64_t>(qos_now_ns()); }
 
   std::atomic<uint64_t> origin_ns_;  ///< CLOCK_MONOTONIC; may wrap below zero
 };

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "platform/clock.hpp"
 #include "transport/peers/matches.hpp"
 #include "transport/qos/manual_liveliness.hpp"
+#include "virtual_time/door.hpp"
 
 namespace manycore {
 namespace {
@@ -19,7 +19,7 @@ void add(
   }
   // Before the assertion is loaded: if that is out of date, and found to have run out, the clock of
   // the publisher, which reads it after its store, says so too, and the publisher notifies.
-  const int64_t now_ns = monotonic_ns();
+  const int64_t now_ns = qos_now_ns();
   const int64_t asserted_ns = publisher.asserted_ns.load(std::memory_order_seq_cst);
   if (asserted_ns <= ManualLiveliness::never) {
     return;

@@ -1,12 +1,12 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/qos/manual_liveliness.hpp"
 
-#include "platform/clock.hpp"
+#include "virtual_time/door.hpp"
 
 namespace manycore {
 
 bool ManualLiveliness::ran_out(int64_t asserted_ns) const noexcept {
-  return asserted_ns != never && monotonic_ns() - asserted_ns >= lease_ns_;
+  return asserted_ns != never && qos_now_ns() - asserted_ns >= lease_ns_;
 }
 
 bool ManualLiveliness::assert_now() noexcept {
@@ -14,7 +14,7 @@ bool ManualLiveliness::assert_now() noexcept {
   const int64_t before_ns = asserted_ns_.load(std::memory_order_relaxed);
   lost_ += ran_out(before_ns) ? 1 : 0;
   // seq_cst, before the caller loads the watchers: a waiting thread registers before it loads this.
-  asserted_ns_.store(monotonic_ns(), std::memory_order_seq_cst);
+  asserted_ns_.store(qos_now_ns(), std::memory_order_seq_cst);
   // The clock is read again: a thread that looked just before the store may have found that the
   // lease had run out by then, and has to be told that it has not.
   return before_ns == never || ran_out(before_ns);

@@ -5,12 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "platform/clock.hpp"
 #include "transport/matching/leaving.hpp"
 #include "transport/matching/sweeping.hpp"
 #include "transport/qos/liveliness.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/subscription/subscription_impl.hpp"
+#include "virtual_time/door.hpp"
 
 namespace manycore {
 
@@ -122,7 +122,7 @@ std::optional<Claim> Subscription::claim() {
     claim.is_for_one_reader_ = view.is_for_one_reader;
     claim.size_ = view.record->size_bytes;
     claim.info_.source_timestamp_ns = view.record->source_timestamp_ns;
-    claim.info_.received_timestamp_ns = realtime_ns();
+    claim.info_.received_timestamp_ns = stamp_now_ns();
     claim.info_.publication_sequence_number = view.record->publication_sequence_number;
     claim.info_.reception_sequence_number = impl.counts.count_taken(claim.size_);
     claim.info_.publisher = source.publisher();

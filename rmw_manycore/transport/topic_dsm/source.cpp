@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "platform/clock.hpp"
 #include "transport/queue/subscriber_queue.hpp"
 #include "transport/topic_dsm/chunk_table.hpp"
 #include "transport/topic_dsm/last_published.hpp"
 #include "transport/topic_dsm/waiting_publisher.hpp"
+#include "virtual_time/door.hpp"
 
 namespace manycore {
 namespace {
@@ -131,7 +131,7 @@ bool Source::is_for_us(const RecordDescriptor & record) const noexcept {
 /// The shorter lifespan of publisher and subscription applies.
 bool Source::is_expired(const RecordDescriptor & record) const noexcept {
   const int64_t lifespan_ns = std::min(dsm_->lifespan_ns, subscription_->qos.lifespan_ns);
-  return lifespan_ns != infinite_ns && realtime_ns() - record.source_timestamp_ns > lifespan_ns;
+  return lifespan_ns != infinite_ns && stamp_now_ns() - record.source_timestamp_ns > lifespan_ns;
 }
 
 /// A server counts the replies to all clients, so more than a period of them may follow one whose

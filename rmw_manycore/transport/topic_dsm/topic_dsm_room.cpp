@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "platform/clock.hpp"
 #include "platform/error.hpp"
 #include "transport/topic_dsm/topic_dsm_writer.hpp"
+#include "virtual_time/door.hpp"
 
 namespace manycore {
 namespace {
@@ -17,9 +17,9 @@ constexpr int64_t max_blocking_ns = 100'000'000;
 
 void TopicDsmWriter::wait_for_progress(uint64_t number) {
   if (blocked_until_ns_ == 0) {
-    blocked_until_ns_ = monotonic_ns() + max_blocking_ns;
+    blocked_until_ns_ = qos_now_ns() + max_blocking_ns;
   }
-  if (monotonic_ns() >= blocked_until_ns_) {
+  if (qos_now_ns() >= blocked_until_ns_) {
     endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
     throw Error(
       ErrorCode::timeout,
@@ -34,7 +34,11 @@ void TopicDsmWriter::wait_for_progress(uint64_t number) {
   if (is_owed(number)) {
     registry_.tracer().note(TraceKind::blocked, dsm_.endpoint.load(), number);
     leave();  // no other process has to wait for this publisher's phase meanwhile
-    futex_wait(dsm_.progress, seen, blocked_until_ns_);
+    if (const virtual_time::Door * const door = virtual_time::door()) {
+      door->yield(true);
+    } else {
+      futex_wait(dsm_.progress, seen, blocked_until_ns_);
+    }
     enter();
   }
   dsm_.writer_waits.store(0, std::memory_order_relaxed);

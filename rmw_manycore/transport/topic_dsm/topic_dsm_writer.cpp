@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "platform/clock.hpp"
 #include "transport/registry/odd_phase.hpp"
 #include "transport/transfer/transfer.hpp"
+#include "virtual_time/door.hpp"
 
 namespace manycore {
 namespace {
@@ -110,7 +110,7 @@ bool TopicDsmWriter::wants(
 
 bool TopicDsmWriter::is_wanted(uint64_t number, const RecordDescriptor & record) const noexcept {
   const int64_t lifespan = endpoint_.qos.lifespan_ns;
-  if (lifespan != infinite_ns && realtime_ns() - record.source_timestamp_ns > lifespan) {
+  if (lifespan != infinite_ns && stamp_now_ns() - record.source_timestamp_ns > lifespan) {
     return false;
   }
   if (dsm_.transient_local != 0 && !is_of_replies() && is_among_last(dsm_.depth, record)) {

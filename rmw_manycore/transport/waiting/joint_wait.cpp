@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "platform/clock.hpp"
 #include "platform/futex_any.hpp"
 #include "transport/layout/wake_words.hpp"
 
@@ -49,8 +48,13 @@ bool wait_for_any(const std::vector<SeenEpoch> & seen, std::optional<int64_t> de
     awaited.emplace_back(place.waiter->word_.epoch, place.epoch);
   }
   const CountedSleeper sleeper(counts);
-  while (!any_moved(seen) && (!deadline_ns || monotonic_ns() < *deadline_ns)) {
-    futex_wait_any(awaited, deadline_ns);
+  const virtual_time::Door * const door = virtual_time::door();
+  while (!any_moved(seen) && (!deadline_ns || qos_now_ns() < *deadline_ns)) {
+    if (door != nullptr) {
+      door->yield(true);
+    } else {
+      futex_wait_any(awaited, deadline_ns);
+    }
   }
   return any_moved(seen);
 }

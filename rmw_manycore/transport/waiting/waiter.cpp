@@ -23,8 +23,8 @@ constexpr int looks_per_check = 64;
 
 }  // namespace
 
-Waiter::Waiter(WakeWord & word, WaitMode mode) noexcept
-: word_(word), mode_(mode), spin_score_(score_of_success) {}
+Waiter::Waiter(WakeWord & word, WaitMode mode, uint32_t process, uint32_t number) noexcept
+: word_(word), mode_(mode), process_(process), number_(number), spin_score_(score_of_success) {}
 
 uint32_t Waiter::epoch() const noexcept { return word_.epoch.load(std::memory_order_seq_cst); }
 
@@ -62,7 +62,25 @@ bool Waiter::sleep(uint32_t seen, std::optional<int64_t> deadline_ns, OnSignal o
   return epoch() != seen;
 }
 
+/// After the end of virtual time the rest passes at the pace of the wall clock.
+bool Waiter::wait_virtually(
+  const virtual_time::Door & door, uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
+  const virtual_time::Awaited awaited{process_, number_, seen};
+  while (epoch() == seen && (!deadline_ns || door.now_ns() < *deadline_ns)) {
+    if (!door.wait(awaited, deadline_ns.value_or(INT64_MAX))) {
+      const int64_t left_ns = deadline_ns ? *deadline_ns - door.now_ns() : 0;
+      return sleep(
+        seen, deadline_ns ? std::optional(monotonic_ns() + left_ns) : std::nullopt,
+        OnSignal::resume);
+    }
+  }
+  return epoch() != seen;
+}
+
 bool Waiter::wait(uint32_t seen, std::optional<int64_t> deadline_ns, OnSignal on_signal) noexcept {
+  if (const virtual_time::Door * const door = virtual_time::door()) {
+    return wait_virtually(*door, seen, deadline_ns);
+  }
   if (mode_ == WaitMode::spin) {
     return spin(seen, deadline_ns);
   }

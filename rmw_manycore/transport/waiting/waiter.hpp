@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "virtual_time/door.hpp"
+
 namespace manycore {
 
 struct SeenEpoch;
@@ -29,11 +31,14 @@ enum class OnSignal : uint8_t {
 /// all entities, read epoch(), check all entities, then wait(epoch).
 class Waiter {
 public:
-  Waiter(WakeWord & word, WaitMode mode) noexcept;
+  /// `number`: of the word in slot `process`, for the timekeeper of a run in virtual time.
+  Waiter(
+    WakeWord & word, WaitMode mode, uint32_t process = virtual_time::no_process,
+    uint32_t number = 0) noexcept;
 
   uint32_t epoch() const noexcept;
 
-  /// Returns true when the epoch is no longer `seen`, false at `deadline_ns` (CLOCK_MONOTONIC;
+  /// Returns true when the epoch is no longer `seen`, false at `deadline_ns` (qos_now_ns();
   /// unset = no limit) or after it gave up on a signal, which spinning ignores. Thread-safe.
   bool wait(
     uint32_t seen, std::optional<int64_t> deadline_ns,
@@ -45,11 +50,15 @@ public:
 private:
   friend bool wait_for_any(const std::vector<SeenEpoch> &, std::optional<int64_t>);
   bool spin(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept;
+  bool wait_virtually(
+    const virtual_time::Door & door, uint32_t seen, std::optional<int64_t> deadline_ns) noexcept;
   bool sleep(uint32_t seen, std::optional<int64_t> deadline_ns, OnSignal on_signal) noexcept;
   void learn(bool served) noexcept;
 
   WakeWord & word_;
   WaitMode mode_;
+  const uint32_t process_;
+  const uint32_t number_;
   std::atomic<uint32_t> spin_score_;
   std::atomic<uint32_t> sleepers_{0};  ///< threads of this process
 };

@@ -9,8 +9,8 @@ static_assert(first_thread_word + thread_numbers == wake_words_per_process);
 
 Waiters::Waiters(GraphWatchers & graph_watchers, uint32_t process, WakeWords & words, WaitMode mode)
 : graph_watchers_(graph_watchers), process_(process), words_(words) {
-  for (WakeWord & word : words.words) {
-    waiters_.emplace_back(word, mode);
+  for (uint32_t number = 0; number < wake_words_per_process; ++number) {
+    waiters_.emplace_back(words.words[number], mode, process, number);
   }
 }
 

@@ -1,0 +1,36 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace manycore {
+
+/// What the run tells its timekeeper, one line each.
+struct Command {
+  enum class Kind {
+    start,  ///< `start RANK PID NAME`: the program's process exists; time stands until it joined
+    gone,   ///< `gone RANK`: the program has ended and is not started again
+    go,     ///< `go NS`: all programs were started; time ends after NS, unless that is 0
+    over,   ///< `over`, or the end of the input: from here on time is the wall clock's
+  };
+  Kind kind;
+  uint32_t rank = 0;
+  int32_t pid = 0;
+  int64_t duration_ns = 0;
+  std::string name{};
+};
+
+/// The lines of standard input. Never blocks.
+class CommandInput {
+public:
+  /// Makes standard input non-blocking.
+  CommandInput();
+  std::vector<Command> take();
+
+private:
+  std::string unfinished_;
+};
+
+}  // namespace manycore

@@ -1,0 +1,325 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/timekeeping/timekeeper.hpp"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "platform/clock.hpp"
+#include "platform/os_process.hpp"
+
+namespace manycore {
+namespace {
+
+using virtual_time::never_ns;
+using virtual_time::no_process;
+using virtual_time::seat_free;
+using virtual_time::seat_running;
+using virtual_time::seat_waiting;
+
+/// Time that a thread may run before the kernel is asked what it does.
+constexpr int64_t look_after_ns = 1'000'000;
+constexpr int64_t idle_ns = 5'000'000;
+constexpr int64_t short_pause_ns = 50'000;
+/// Wall time after which whatever holds time still is named.
+constexpr int64_t report_after_ns = ns_per_s;
+/// How long the rows of a dead process may stay in the registry.
+constexpr int64_t reaping_ns = 2 * ns_per_s;
+
+/// The order in which seats that are ready go on.
+uint64_t key_of(const virtual_time::Seat & seat) noexcept {
+  return uint64_t{seat.rank} << 32 | seat.ordinal;
+}
+
+bool has_ended(const FileDescriptor & pidfd) noexcept {
+  pollfd readable{pidfd.get(), POLLIN, 0};
+  return !pidfd || poll(&readable, 1, 0) > 0;
+}
+
+}  // namespace
+
+Timekeeper::Timekeeper(Registry & registry, virtual_time::Page & page)
+: registry_(registry), page_(page) {}
+
+void Timekeeper::run() {
+  while (!is_over_) {
+    take_commands();
+    const uint32_t seen = page_.changes.load(std::memory_order_seq_cst);
+    if (!has_begun_ || is_frozen_ || !step()) {
+      pause(seen, idle_ns);
+    }
+  }
+  finish();
+}
+
+/// One step of the order; false if there is nothing to do before a command comes.
+bool Timekeeper::step() {
+  if (active_) {
+    settle(*active_, programs_.at(*active_));
+    drain();
+    active_.reset();
+    return true;
+  }
+  for (auto & [rank, program] : programs_) {
+    if (program.state == Program::State::starting) {
+      await_join(rank, program);
+      return true;
+    }
+    if (program.state == Program::State::ended) {
+      return false;
+    }
+    if (program.state == Program::State::joined && has_ended(program.pidfd)) {
+      note_end(program);
+      return true;
+    }
+  }
+  if (Seat * const seat = next_ready()) {
+    let_go(*seat);
+    return true;
+  }
+  advance();
+  return !is_frozen_ && page_.now_ns.load() != never_ns;
+}
+
+template<typename Visit>
+void Timekeeper::for_each_seat(Visit visit) const {
+  const uint32_t count = std::min(page_.seat_count.load(), virtual_time::seat_capacity);
+  for (uint32_t i = 0; i < count; ++i) {
+    visit(page_.seats[i]);
+  }
+}
+
+void Timekeeper::take_commands() {
+  for (const Command & command : commands_.take()) {
+    obey(command);
+  }
+}
+
+void Timekeeper::obey(const Command & command) {
+  switch (command.kind) {
+    case Command::Kind::start: {
+      Program & program = programs_[command.rank];
+      program.name = command.name;
+      program.pid = command.pid;
+      program.pidfd = open_pidfd(command.pid);
+      program.threads.emplace(command.pid);
+      program.state = Program::State::starting;
+      break;
+    }
+    case Command::Kind::gone:
+      note_end(programs_[command.rank]);
+      programs_[command.rank].state = Program::State::gone;
+      break;
+    case Command::Kind::go:
+      has_begun_ = true;
+      end_ns_ = command.duration_ns > 0 ? virtual_time::start_ns + command.duration_ns : never_ns;
+      break;
+    case Command::Kind::over:
+      is_over_ = true;
+      break;
+  }
+}
+
+/// Programs start one after the other, in their order: so endpoints are created in one order.
+void Timekeeper::await_join(uint32_t rank, Program & program) {
+  const uint32_t seen = page_.changes.load(std::memory_order_seq_cst);
+  Seat * joining = nullptr;
+  for_each_seat([&](Seat & seat) {
+    const bool waits = seat.state.load(std::memory_order_acquire) == seat_waiting;
+    joining = waits && seat.rank == rank && seat.pid == program.pid ? &seat : joining;
+  });
+  if (joining != nullptr) {
+    program.state = Program::State::joined;
+    let_go(*joining);
+  } else if (has_ended(program.pidfd)) {
+    note_end(program);
+  } else {
+    pause(seen, idle_ns);
+  }
+}
+
+/// Waits until no thread of a program that was let go can do anything more at this time.
+void Timekeeper::settle(uint32_t rank, Program & program) {
+  const int64_t started_ns = monotonic_ns();
+  int64_t pause_ns = short_pause_ns;
+  while (!is_over_ && program.state == Program::State::joined) {
+    const uint32_t seen = page_.changes.load(std::memory_order_seq_cst);
+    const int64_t waited_ns = monotonic_ns() - started_ns;
+    if (is_quiet(rank, program, waited_ns > look_after_ns)) {
+      return;
+    }
+    if (waited_ns > look_after_ns && has_ended(program.pidfd)) {
+      note_end(program);
+      return;
+    }
+    if (waited_ns > report_after_ns) {
+      const Members own = members(rank);
+      const auto look = program.threads->look(own.waiting, own.running);
+      report_still(
+        program.name + (look.doing.empty() ? " computes" : " " + look.doing) +
+        (look.tid == 0 ? "" : " (thread " + std::to_string(look.tid) + ")"));
+    }
+    pause(seen, pause_ns);
+    pause_ns = std::min(2 * pause_ns, idle_ns);
+  }
+}
+
+Timekeeper::Members Timekeeper::members(uint32_t rank) const {
+  Members found;
+  for_each_seat([&](const Seat & seat) {
+    const uint32_t state = seat.state.load(std::memory_order_acquire);
+    if (state != seat_free && seat.rank == rank) {
+      (state == seat_waiting ? found.waiting : found.running).push_back(seat.tid);
+    }
+  });
+  return found;
+}
+
+/// A thread that was let go and sleeps in a lock waits for others of its process; then one of them
+/// must wait for the timekeeper, or they wait for another process. `looks`: also ask the kernel
+/// about threads that were let go.
+bool Timekeeper::is_quiet(uint32_t rank, Program & program, bool looks) {
+  const Members own = members(rank);
+  if (own.waiting.empty() || (!own.running.empty() && !looks)) {
+    return false;
+  }
+  return program.threads->look(own.waiting, own.running).asleep;
+}
+
+/// Frees the seats of a dead process and waits until its endpoints are removed, which happens in
+/// wall time: so the others learn of it at this virtual time.
+void Timekeeper::note_end(Program & program) {
+  if (program.state == Program::State::gone || program.pid == 0) {
+    return;
+  }
+  for_each_seat([&](Seat & seat) {
+    if (seat.state.load(std::memory_order_acquire) != seat_free && seat.pid == program.pid) {
+      seat.state.store(seat_free, std::memory_order_release);
+    }
+  });
+  const auto is_listed = [&] {
+    bool found = false;
+    for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
+      found = found || (registry_.processes().is_live(slot) &&
+                        registry_.processes()[slot].pid == program.pid);
+    }
+    return found;
+  };
+  const int64_t until_ns = monotonic_ns() + reaping_ns;
+  while (is_listed() && monotonic_ns() < until_ns) {
+    futex_wait(page_.changes, page_.changes.load(), monotonic_ns() + short_pause_ns);
+  }
+  program.state = Program::State::ended;
+}
+
+/// Waits until the receive threads have forwarded what was sent.
+void Timekeeper::drain() {
+  const int64_t started_ns = monotonic_ns();
+  while (!is_over_ && !is_drained()) {
+    if (monotonic_ns() - started_ns > report_after_ns) {
+      report_still("a receive thread is busy");
+    }
+    pause(page_.changes.load(std::memory_order_seq_cst), short_pause_ns);
+  }
+}
+
+/// A message in a pipe has made its reader runnable before the sender's write() returned, so
+/// readers that sleep have read all.
+bool Timekeeper::is_drained() {
+  for (uint32_t id = 1; id <= registry_.header().profile.clusters; ++id) {
+    Cluster * const cluster = registry_.clusters().find(id);
+    const pid_t pid = cluster == nullptr ? 0 : cluster->header().receive_thread_pid.load();
+    if (pid == 0) {
+      continue;
+    }
+    ProcessThreads & threads = receive_threads_.try_emplace(pid, pid).first->second;
+    if (!threads.look({}, {}).asleep) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool Timekeeper::is_ready(const Seat & seat) {
+  if (seat.due_ns <= page_.now_ns.load(std::memory_order_relaxed)) {
+    return true;
+  }
+  if (seat.process == no_process || seat.process >= registry_.processes().high_water()) {
+    return false;
+  }
+  const WakeWords & wake = registry_.processes()[seat.process].wake;
+  return wake.words[seat.word % wake_words_per_process].epoch.load() != seat.seen;
+}
+
+/// The ready seat that follows the one let go last, in the cyclic order of programs and threads: so
+/// two programs that answer each other do not keep a third one waiting.
+Timekeeper::Seat * Timekeeper::next_ready() {
+  Seat * first = nullptr;
+  Seat * following = nullptr;
+  for_each_seat([&](Seat & seat) {
+    if (seat.state.load(std::memory_order_acquire) != seat_waiting || !is_ready(seat)) {
+      return;
+    }
+    const uint64_t key = key_of(seat);
+    if (first == nullptr || key < key_of(*first)) {
+      first = &seat;
+    }
+    if (key > last_ && (following == nullptr || key < key_of(*following))) {
+      following = &seat;
+    }
+  });
+  return following != nullptr ? following : first;
+}
+
+void Timekeeper::let_go(Seat & seat) {
+  last_ = key_of(seat);
+  active_ = seat.rank;
+  ++steps_;
+  seat.state.store(seat_running, std::memory_order_release);
+  futex_wake_one(seat.state);
+}
+
+/// Nothing can happen at this time any more: on to when the next wait is due.
+void Timekeeper::advance() {
+  int64_t next_ns = never_ns;
+  for_each_seat([&](const Seat & seat) {
+    if (seat.state.load(std::memory_order_acquire) == seat_waiting) {
+      next_ns = std::min(next_ns, seat.due_ns);
+    }
+  });
+  if (end_ns_ <= next_ns && end_ns_ != never_ns) {
+    page_.now_ns.store(end_ns_, std::memory_order_release);
+    is_frozen_ = true;
+    report("end", std::to_string(steps_));
+  } else if (next_ns != never_ns) {
+    page_.now_ns.store(next_ns, std::memory_order_release);
+  } else {
+    pause(page_.changes.load(std::memory_order_seq_cst), idle_ns);  // something from outside
+  }
+}
+
+void Timekeeper::finish() {
+  page_.over_at_ns.store(monotonic_ns(), std::memory_order_relaxed);
+  page_.is_over.store(1, std::memory_order_seq_cst);
+  for_each_seat([](Seat & seat) { futex_wake_all(seat.state); });
+}
+
+void Timekeeper::pause(uint32_t seen, int64_t ns) {
+  futex_wait(page_.changes, seen, monotonic_ns() + ns);
+  take_commands();
+}
+
+void Timekeeper::report(const char * kind, const std::string & text) const {
+  std::printf("%s %s\n", kind, text.c_str());
+  std::fflush(stdout);
+}
+
+void Timekeeper::report_still(const std::string & what) {
+  if (reported_.insert(what).second) {
+    const int64_t ms = (page_.now_ns.load() - virtual_time::start_ns) / 1'000'000;
+    report("still", std::to_string(ms) + " " + what);
+  }
+}
+
+}  // namespace manycore

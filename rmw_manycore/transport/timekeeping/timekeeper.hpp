@@ -1,0 +1,90 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <set>
+#include <string>
+
+#include "platform/file_descriptor.hpp"
+#include "platform/process_threads.hpp"
+#include "transport/registry/registry.hpp"
+#include "transport/timekeeping/commands.hpp"
+#include "virtual_time/door.hpp"
+#include "virtual_time/seats.hpp"
+
+namespace manycore {
+
+/// Keeps the virtual time of a run: lets one thread at a time go on, in an order that depends on
+/// nothing but virtual time and the order of the programs, and advances time when none can
+/// (docs/design/virtual_time.md). The only writer of the time. Model: docs/model/virtual_time.pml.
+class Timekeeper {
+public:
+  Timekeeper(Registry & registry, virtual_time::Page & page);
+
+  /// Runs until told that it is over; then time goes on at the pace of the wall clock.
+  void run();
+
+private:
+  using Seat = virtual_time::Seat;
+
+  /// A program of the run, by its rank.
+  struct Program {
+    enum class State {
+      starting,  ///< time stands until its process joins
+      joined,
+      ended,  ///< time stands until the run says whether it is started again
+      gone,
+    };
+    std::string name;
+    State state = State::starting;
+    pid_t pid = 0;
+    FileDescriptor pidfd;
+    std::optional<ProcessThreads> threads;
+  };
+
+  /// The threads of a process that wait for the timekeeper, and those that it let go on.
+  struct Members {
+    std::vector<pid_t> waiting;
+    std::vector<pid_t> running;
+  };
+
+  void take_commands();
+  void obey(const Command & command);
+  bool step();
+  void await_join(uint32_t rank, Program & program);
+  void settle(uint32_t rank, Program & program);
+  bool is_quiet(uint32_t rank, Program & program, bool looks);
+  Members members(uint32_t rank) const;
+  void note_end(Program & program);
+  void drain();
+  bool is_drained();
+  Seat * next_ready();
+  bool is_ready(const Seat & seat);
+  void let_go(Seat & seat);
+  void advance();
+  void finish();
+
+  /// Sleeps until a seat changes after `seen`, at most `ns`; takes commands.
+  void pause(uint32_t seen, int64_t ns);
+  void report(const char * kind, const std::string & text) const;
+  void report_still(const std::string & what);
+  template<typename Visit>
+  void for_each_seat(Visit visit) const;
+
+  Registry & registry_;
+  virtual_time::Page & page_;
+  CommandInput commands_;
+  std::map<uint32_t, Program> programs_;
+  std::map<pid_t, ProcessThreads> receive_threads_;
+  std::set<std::string> reported_;
+  std::optional<uint32_t> active_;  ///< rank of the program that was let go last
+  uint64_t last_ = 0;               ///< key of the seat that was let go last
+  uint64_t steps_ = 0;
+  int64_t end_ns_ = virtual_time::never_ns;
+  bool has_begun_ = false;
+  bool is_frozen_ = false;  ///< the end of the duration was reached
+  bool is_over_ = false;
+};
+
+}  // namespace manycore

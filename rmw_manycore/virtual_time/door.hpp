@@ -1,0 +1,78 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "platform/clock.hpp"
+
+/// What the middleware calls of the library that a run in virtual time preloads into its processes.
+/// Without that library there is no door, and time is the wall clock's.
+namespace manycore::virtual_time {
+
+/// `Awaited::process` of a wait that only its due time ends.
+constexpr uint32_t no_process = UINT32_MAX;
+
+/// The wake word that ends a wait, in the slot `process` of the registry.
+struct Awaited {
+  uint32_t process;
+  uint32_t word;
+  uint32_t seen;  ///< the wait ends when its epoch is another one
+};
+
+struct Door {
+  /// Virtual time, of all clocks.
+  int64_t (*now_ns)() noexcept;
+  /// Blocks until it is this program's turn to start. Only the first call of a process does.
+  void (*join)() noexcept;
+  /// Blocks until the timekeeper lets this thread go on: the epoch has changed or it is `due_ns`.
+  /// False if time is not virtual any more.
+  bool (*wait)(const Awaited & awaited, int64_t due_ns) noexcept;
+  /// Lets the others that are due now go first. An `empty` poll, repeated at the same time, takes
+  /// time: a loop of polls comes to its end.
+  void (*yield)(bool empty) noexcept;
+  /// Lets the time pass that this thread has computed since it last waited.
+  void (*elapse)() noexcept;
+};
+
+}  // namespace manycore::virtual_time
+
+extern "C" {
+/// The door, or nullptr in a process that has not joined. Defined by the preloaded library only.
+[[gnu::weak, gnu::visibility("default")]] const manycore::virtual_time::Door *
+manycore_virtual_time() noexcept;
+}
+
+namespace manycore::virtual_time {
+
+/// Nullptr where time is the wall clock's.
+inline const Door * door() noexcept {
+  return manycore_virtual_time == nullptr ? nullptr : manycore_virtual_time();
+}
+
+}  // namespace manycore::virtual_time
+
+namespace manycore {
+
+/// Clock of QoS: deadlines, leases and timeouts of users. CLOCK_MONOTONIC or virtual time.
+inline int64_t qos_now_ns() noexcept {
+  const virtual_time::Door * const door = virtual_time::door();
+  return door == nullptr ? monotonic_ns() : door->now_ns();
+}
+
+/// Time of a publication, once the time has passed that was spent on it.
+inline int64_t publish_now_ns() noexcept {
+  const virtual_time::Door * const door = virtual_time::door();
+  if (door == nullptr) {
+    return realtime_ns();
+  }
+  door->elapse();
+  return door->now_ns();
+}
+
+/// Clock of message timestamps and lifespans. CLOCK_REALTIME or virtual time.
+inline int64_t stamp_now_ns() noexcept {
+  const virtual_time::Door * const door = virtual_time::door();
+  return door == nullptr ? realtime_ns() : door->now_ns();
+}
+
+}  // namespace manycore

@@ -1,0 +1,142 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// Functions of rcutils, rcl and libc that a run in virtual time replaces in its processes. The
+// library is preloaded, so these are found first (docs/design/virtual_time.md).
+
+#include <dlfcn.h>
+#include <sys/select.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+
+#include "virtual_time/member.hpp"
+
+using manycore::ns_per_s;
+using manycore::virtual_time::Door;
+using manycore::virtual_time::Member;
+
+namespace {
+
+/// The function of the same name in the libraries behind this one.
+template<typename Function>
+Function * next(const char * name) noexcept {
+  return reinterpret_cast<Function *>(dlsym(RTLD_NEXT, name));
+}
+
+/// Nullptr in a process that has not joined.
+Member * joined() noexcept {
+  Member * const member = Member::find();
+  return member != nullptr && member->has_joined() ? member : nullptr;
+}
+
+int64_t ns_of(const timespec & time) noexcept { return time.tv_sec * ns_per_s + time.tv_nsec; }
+
+/// What the thread read last of CLOCK_MONOTONIC, which stays the wall clock's: an absolute sleep
+/// that follows is taken as one of the difference.
+[[gnu::tls_model("initial-exec")]] thread_local int64_t last_monotonic_ns = 0;
+
+int sleep_for(Member & member, int64_t duration_ns) noexcept {
+  return member.sleep_until(member.now_ns() + std::max<int64_t>(duration_ns, 0)) ? 0 : EINTR;
+}
+
+/// As nanosleep(): what is left once time is not virtual any more counts as slept.
+int with_errno(int error) noexcept {
+  errno = error;
+  return error == 0 ? 0 : -1;
+}
+
+const Door the_door{
+  []() noexcept { return Member::find()->now_ns(); },
+  []() noexcept { Member::find()->join(); },
+  [](const manycore::virtual_time::Awaited & awaited, int64_t due_ns) noexcept {
+    return Member::find()->wait(awaited, due_ns);
+  },
+  [](bool empty) noexcept { Member::find()->yield(empty); },
+  []() noexcept { Member::find()->elapse(); },
+};
+
+}  // namespace
+
+#define INTERPOSED extern "C" [[gnu::visibility("default")]]
+
+INTERPOSED const Door * manycore_virtual_time() noexcept {
+  return Member::find() == nullptr ? nullptr : &the_door;
+}
+
+INTERPOSED int rcutils_steady_time_now(int64_t * now) {
+  Member * const member = Member::find();
+  *now = member == nullptr ? manycore::monotonic_ns() : member->now_ns();
+  return 0;
+}
+
+INTERPOSED int rcutils_system_time_now(int64_t * now) {
+  Member * const member = Member::find();
+  *now = member == nullptr ? manycore::realtime_ns() : member->now_ns();
+  return 0;
+}
+
+/// The time of a node with use_sim_time is the virtual one, not what /clock said last: its timers
+/// then have due times like all others.
+INTERPOSED int rcl_enable_ros_time_override(void * clock) {
+  if (Member::find() != nullptr) {
+    return 0;
+  }
+  static auto * const real = next<int(void *)>("rcl_enable_ros_time_override");
+  return real == nullptr ? 1 : real(clock);
+}
+
+/// Threads that never wait for the timekeeper keep the wall clock: those of libraries wait in locks
+/// with timeouts of the kernel.
+INTERPOSED int clock_gettime(clockid_t clock, timespec * time) noexcept {
+  static auto * const real = next<int(clockid_t, timespec *)>("clock_gettime");
+  const int result = real(clock, time);
+  if (clock == CLOCK_MONOTONIC) {
+    last_monotonic_ns = ns_of(*time);
+  } else if (clock == CLOCK_REALTIME && Member::has_seat()) {
+    *time = manycore::to_timespec(Member::find()->now_ns());
+  }
+  return result;
+}
+
+INTERPOSED int clock_nanosleep(
+  clockid_t clock, int flags, const timespec * request, timespec * remain) {
+  Member * const member = joined();
+  if (member == nullptr) {
+    static auto * const real =
+      next<int(clockid_t, int, const timespec *, timespec *)>("clock_nanosleep");
+    return real(clock, flags, request, remain);
+  }
+  int64_t from_ns = 0;
+  if ((flags & TIMER_ABSTIME) != 0) {
+    from_ns = clock == CLOCK_REALTIME ? manycore::realtime_ns() : last_monotonic_ns;
+  }
+  return sleep_for(*member, ns_of(*request) - from_ns);
+}
+
+INTERPOSED int nanosleep(const timespec * request, timespec * remain) {
+  if (Member * const member = joined()) {
+    return with_errno(sleep_for(*member, ns_of(*request)));
+  }
+  static auto * const real = next<int(const timespec *, timespec *)>("nanosleep");
+  return real(request, remain);
+}
+
+INTERPOSED int usleep(useconds_t duration_us) {
+  if (Member * const member = joined()) {
+    return with_errno(sleep_for(*member, int64_t{duration_us} * 1000));
+  }
+  static auto * const real = next<int(useconds_t)>("usleep");
+  return real(duration_us);
+}
+
+/// Without descriptors it is a sleep: time.sleep() of Python 3.10.
+INTERPOSED int select(
+  int count, fd_set * readable, fd_set * writable, fd_set * exceptional, timeval * timeout) {
+  Member * const member = count == 0 && timeout != nullptr ? joined() : nullptr;
+  if (member != nullptr) {
+    return with_errno(sleep_for(*member, timeout->tv_sec * ns_per_s + timeout->tv_usec * 1000));
+  }
+  static auto * const real = next<int(int, fd_set *, fd_set *, fd_set *, timeval *)>("select");
+  return real(count, readable, writable, exceptional, timeout);
+}

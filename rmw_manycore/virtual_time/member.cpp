@@ -1,0 +1,183 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "virtual_time/member.hpp"
+
+#include <pthread.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+
+namespace manycore::virtual_time {
+namespace {
+
+/// What a poll that finds nothing takes from the second one at the same time on.
+constexpr int64_t poll_ns = 100'000;
+/// How soon a waiting thread notices that the timekeeper was killed.
+constexpr int64_t look_after_ns = ns_per_s;
+
+/// Frees the thread's seat at its end.
+struct ThreadSeat {
+  Seat * seat = nullptr;
+  Page * page = nullptr;
+  pid_t pid = 0;  ///< a child of fork() inherits the object, not the seat
+  int64_t last_empty_poll_ns = 0;
+  int64_t computed_from_ns = 0;  ///< CPU time of the thread
+
+  ThreadSeat() = default;
+  ThreadSeat(const ThreadSeat &) = delete;
+  ThreadSeat & operator=(const ThreadSeat &) = delete;
+  ~ThreadSeat() {
+    if (seat != nullptr && pid == getpid()) {
+      seat->state.store(seat_free, std::memory_order_release);
+      page->changes.fetch_add(1, std::memory_order_seq_cst);
+      futex_wake_one(page->changes);
+    }
+  }
+};
+
+thread_local ThreadSeat own;
+
+void leave_in_child() noexcept {
+  if (Member * const member = Member::find()) {
+    member->leave();
+  }
+}
+
+}  // namespace
+
+Member::Member(SharedMemory memory, uint32_t rank) noexcept
+: memory_(std::move(memory)), page_(memory_.at<Page>(0)), rank_(rank) {}
+
+Member * Member::find() noexcept {
+  static Member * const member = attach();
+  return member;
+}
+
+/// Never destroyed: threads may wait until the process ends.
+Member * Member::attach() noexcept {
+  const char * const path = std::getenv("MANYCORE_VIRTUAL_TIME");
+  const char * const rank = std::getenv("MANYCORE_VIRTUAL_RANK");
+  if (path == nullptr || rank == nullptr) {
+    return nullptr;
+  }
+  try {
+    SharedMemory memory = SharedMemory::attach(path);
+    if (memory.size() < sizeof(Page) || memory.at<Page>(0).magic != page_magic) {
+      std::fprintf(stderr, "[rmw_manycore] %s is not the time of this version\n", path);
+      return nullptr;
+    }
+    pthread_atfork(nullptr, nullptr, leave_in_child);
+    return new Member(std::move(memory), static_cast<uint32_t>(std::atoi(rank)));
+  } catch (const std::exception & error) {
+    std::fprintf(stderr, "[rmw_manycore] no virtual time: %s\n", error.what());
+    return nullptr;
+  }
+}
+
+int64_t Member::now_ns() const noexcept {
+  const int64_t now_ns = page_.now_ns.load(std::memory_order_acquire);
+  return is_over() ? now_ns + monotonic_ns() - page_.over_at_ns.load(std::memory_order_relaxed)
+                   : now_ns;
+}
+
+/// The timekeeper reads what this process's threads do, as a debugger would.
+void Member::join() noexcept {
+  if (has_joined_.exchange(true)) {
+    return;
+  }
+  prctl(PR_SET_PTRACER, static_cast<unsigned long>(page_.timekeeper), 0, 0, 0);
+  sleep_until(0);
+}
+
+bool Member::has_seat() noexcept { return own.seat != nullptr; }
+
+Seat * Member::seat_of_this_thread() noexcept {
+  if (own.seat == nullptr || own.pid != getpid()) {
+    own.seat = take_seat();
+    own.page = &page_;
+    own.pid = getpid();
+    own.computed_from_ns = clock_ns(CLOCK_THREAD_CPUTIME_ID);
+  }
+  return own.seat;
+}
+
+Seat * Member::take_seat() noexcept {
+  for (uint32_t i = 0; i < seat_capacity; ++i) {
+    Seat & seat = page_.seats[i];
+    uint32_t state = seat_free;
+    if (!seat.state.compare_exchange_strong(state, seat_running, std::memory_order_acq_rel)) {
+      continue;
+    }
+    seat.pid = getpid();
+    seat.tid = gettid();
+    seat.rank = rank_;
+    seat.ordinal = next_ordinal_.fetch_add(1, std::memory_order_relaxed);
+    uint32_t count = page_.seat_count.load(std::memory_order_relaxed);
+    while (count <= i && !page_.seat_count.compare_exchange_weak(count, i + 1)) {
+    }
+    return &seat;
+  }
+  return nullptr;
+}
+
+/// After the timekeeper was killed, time goes on by itself.
+void Member::end_if_alone() noexcept {
+  if (kill(page_.timekeeper, 0) != 0 && errno == ESRCH && !is_over()) {
+    page_.over_at_ns.store(monotonic_ns(), std::memory_order_relaxed);
+    page_.is_over.store(1, std::memory_order_seq_cst);
+  }
+}
+
+bool Member::wait_in(Seat & seat) noexcept {
+  seat.state.store(seat_waiting, std::memory_order_seq_cst);
+  page_.changes.fetch_add(1, std::memory_order_seq_cst);
+  futex_wake_one(page_.changes);
+  while (seat.state.load(std::memory_order_acquire) == seat_waiting) {
+    if (is_over()) {
+      uint32_t waiting = seat_waiting;
+      seat.state.compare_exchange_strong(waiting, seat_running, std::memory_order_acq_rel);
+      return false;
+    }
+    futex_wait(seat.state, seat_waiting, monotonic_ns() + look_after_ns);
+    end_if_alone();
+  }
+  own.computed_from_ns = clock_ns(CLOCK_THREAD_CPUTIME_ID);
+  return true;
+}
+
+bool Member::wait(const Awaited & awaited, int64_t due_ns) noexcept {
+  Seat * const seat = is_over() ? nullptr : seat_of_this_thread();
+  if (seat == nullptr) {
+    return false;
+  }
+  seat->process = awaited.process;
+  seat->word = awaited.word;
+  seat->seen = awaited.seen;
+  seat->due_ns = due_ns;
+  return wait_in(*seat);
+}
+
+bool Member::sleep_until(int64_t due_ns) noexcept { return wait({no_process, 0, 0}, due_ns); }
+
+void Member::yield(bool empty) noexcept {
+  int64_t due_ns = now_ns();
+  if (empty) {
+    due_ns += own.last_empty_poll_ns == due_ns ? poll_ns : 0;
+    own.last_empty_poll_ns = due_ns;
+  }
+  sleep_until(due_ns);
+}
+
+void Member::elapse() noexcept {
+  if (page_.factor <= 0 || own.seat == nullptr || is_over()) {
+    return;
+  }
+  const int64_t computed_ns = clock_ns(CLOCK_THREAD_CPUTIME_ID) - own.computed_from_ns;
+  sleep_until(now_ns() + static_cast<int64_t>(static_cast<double>(computed_ns) * page_.factor));
+}
+
+}  // namespace manycore::virtual_time
