@@ -14,7 +14,12 @@ from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import OutputFile
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
-from rmw_manycore_py.cli.common.starting import prepared_run, starting_options
+from rmw_manycore_py.cli.common.starting import (
+    prepared_run,
+    starting_options,
+    virtual_options,
+    virtual_time,
+)
 from rmw_manycore_py.launch.events import Event
 from rmw_manycore_py.trace.files import SUFFIXES
 
@@ -26,12 +31,14 @@ from rmw_manycore_py.trace.files import SUFFIXES
         "manycore run talker_listener --duration 10",
         "manycore run more_nodes.yaml --join",
         "manycore run talker_listener --duration 10 --trace trace.json",
+        "manycore run talker_listener --virtual --instant --duration 60",
         "manycore run talker_listener --json | jq 'select(.event == \"output\")'",
     ),
 )
 @mapfile_argument()
 @duration_option()
 @starting_options
+@virtual_options
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per event.")
 @click.option(
     "--trace",
@@ -43,6 +50,9 @@ def command(
     duration_s: float | None,
     joins: bool,
     nodes: tuple[str, ...],
+    virtual: bool,
+    instant: bool,
+    factor: float | None,
     as_json: bool,
     trace: Path | None,
 ) -> None:
@@ -52,8 +62,11 @@ def command(
     demo --list). The run ends when all nodes have ended, after --duration, or on Ctrl-C; a
     second Ctrl-C does not wait for slow nodes. The exit status is non-zero if a node failed. To
     run in the background, use manycore up -d.
+
+    In virtual time a run is repeatable and may take less time than --duration says.
     """
-    run, _ = prepared_run(mapfile, joins, nodes)
+    time = virtual_time(virtual, instant, factor)
+    run, _ = prepared_run(mapfile, joins, nodes, virtual=time)
     report = _print_json if as_json else RunPrinter(run.program_names).report
     sys.exit(run.run(report, duration_s, trace=trace))
 

@@ -23,6 +23,7 @@ from rmw_manycore_py.launch.ros2_daemon import CURE, end_lone_daemons
 from rmw_manycore_py.launch.runner import Report, Runner
 from rmw_manycore_py.launch.runs.directory import OwnRun, new_run
 from rmw_manycore_py.launch.runs.private import write_private
+from rmw_manycore_py.launch.timekeeper import VirtualTime, check_virtual, timekeeper
 from rmw_manycore_py.launch.traced import traced
 from rmw_manycore_py.mapfile.placing.placement import PARAMETERS, Placement
 from rmw_manycore_py.platform.topology import RECEIVE_THREAD_CORE
@@ -34,11 +35,12 @@ RECEIVE_THREAD = "(receive thread)"  # node names have no spaces
 
 @dataclass(frozen=True)
 class Mode:
-    """Whether a run creates or joins its platform, and whether it is in the background."""
+    """Whether a run creates or joins its platform, is in the background, and what its time is."""
 
     mapfile: Path
     joins: bool = False
     detached: bool = False
+    virtual: VirtualTime | None = None  # None: the wall clock
 
 
 class Run:
@@ -50,6 +52,8 @@ class Run:
         self._bridge = bridge_programs(placement)
         self._helpers = helper_programs(placement)
         _check_scheduling(placement)
+        if mode.virtual is not None:
+            check_virtual(placement, joins=mode.joins)
 
     @property
     def program_names(self) -> list[str]:
@@ -90,7 +94,7 @@ class Run:
         with closing(Runner(programs, report)) as runner, reports.kept(runner, self.program_names):
             for text in placement.notices:
                 report(Notice(text))
-            with self._platform(report), self._traced(trace, report):
+            with self._platform(report), self._traced(trace, report), self._clock(runner):
                 report(_describe(placement, self._bridge))
                 exit_status = self._run_nodes(runner, report, inbox, duration_s, all_started)
             if users := self._remaining_users():
@@ -147,6 +151,15 @@ class Run:
                 )
             )
         return configured_platform(self._placement)
+
+    @contextmanager
+    def _clock(self, runner: Runner) -> Iterator[None]:
+        if self._mode.virtual is None:
+            yield
+            return
+        with timekeeper(self._placement.name, self._mode.virtual) as keeper:
+            runner.live_in(keeper)
+            yield
 
     def _traced(self, path: Path | None, report: Report) -> AbstractContextManager[Any]:
         if path is None:

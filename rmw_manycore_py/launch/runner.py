@@ -16,6 +16,7 @@ from rmw_manycore_py.launch.events import (
     Ended,
     Event,
     Insisting,
+    Notice,
     Output,
     Restarting,
     Started,
@@ -25,6 +26,7 @@ from rmw_manycore_py.launch.processes.node_process import NodeProcess
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import NodeState
 from rmw_manycore_py.launch.schedule import ended, respawned, schedule, started
+from rmw_manycore_py.launch.timekeeper import Timekeeper
 from rmw_manycore_py.process.signals import SignalInbox
 
 Report = Callable[[Event], None]
@@ -55,6 +57,7 @@ class Runner:
         self._is_timed = False
         self._all_started: Handler | None = None
         self._end_s = float("inf")  # CLOCK_MONOTONIC, end of the run's duration
+        self._timekeeper: Timekeeper | None = None
         # Output callbacks by node name.
         self.taps: defaultdict[str, list[Callable[[bytes], None]]] = defaultdict(list)
 
@@ -69,6 +72,14 @@ class Runner:
             if node.program.name == name:
                 return node
         raise ManycoreError(f"no node '{name}' in this run")
+
+    def live_in(self, keeper: Timekeeper) -> None:
+        """Run the nodes in virtual time; call before they are started."""
+        self._timekeeper = keeper
+        for rank, node in enumerate(self._nodes):
+            environment = keeper.environment(node.program.environment, rank)
+            node.program = replace(node.program, environment=environment)
+        self.watch(keeper, self._hear_timekeeper)
 
     @property
     def failed(self) -> tuple[str, ...]:
@@ -126,6 +137,9 @@ class Runner:
         if node is None:
             return
         if node.start(lambda data: self._tap(node.program.name, data)):
+            if self._timekeeper is not None:
+                rank = self._nodes.index(node)
+                self._timekeeper.started(rank, node.process.pid, node.program.name)
             self._watch_node(node)
             started(self._nodes, node)
         else:
@@ -134,7 +148,9 @@ class Runner:
                 self._stop(f"{node.program.name} {node.ending.reason}" if node.ending else "")
         if not self._is_timed and self._next_node() is None:
             self._is_timed = True
-            if duration_s is not None:
+            if self._timekeeper is not None:
+                self._timekeeper.begin(duration_s)
+            elif duration_s is not None:
                 self._end_s = time.monotonic() + duration_s
             if self._all_started is not None and not self._stopping:
                 self._all_started()
@@ -187,6 +203,8 @@ class Runner:
             self._report(Restarting(node.program.name, node.ending.reason, node.last_lines))
             self._nodes[self._nodes.index(node)] = successor
         else:
+            if self._timekeeper is not None:
+                self._timekeeper.gone(self._nodes.index(node))
             self._report_end(node)
         ended(self._nodes, node)
         if node.program.rules.ends_run and not (node.is_wanted_again or node.is_held):
@@ -261,6 +279,21 @@ class Runner:
         for node in self._nodes:
             if node.state is NodeState.RUNNING and not node.is_leaderless:
                 node.stop()
+        # After the signals: the nodes see them before they see time go on.
+        if self._timekeeper is not None:
+            self._timekeeper.end()
+
+    def _hear_timekeeper(self) -> None:
+        assert self._timekeeper is not None
+        for report in self._timekeeper.read_reports():
+            if report.kind == "end":
+                self._stop("the duration is over")
+            elif report.kind == "still":
+                at_ms, _, why = report.text.partition(" ")
+                self._report(Notice(f"time stands still at {int(at_ms) / 1000} s: {why}"))
+            else:
+                self.unwatch(self._timekeeper)
+                self._stop("the timekeeper has ended")
 
     def _insist(self, now_s: float) -> None:
         """Send the next signal to each node whose grace period is over."""

@@ -14,6 +14,7 @@ import click
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.platform import occupied_cores
 from rmw_manycore_py.launch.run import Mode, Run
+from rmw_manycore_py.launch.timekeeper import VirtualTime
 from rmw_manycore_py.mapfile import Mapfile, Placement, load_mapfile, resolve
 
 
@@ -33,13 +34,47 @@ def starting_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def prepared_run(
-    mapfile: Path, joins: bool, nodes: tuple[str, ...], detached: bool = False
+    mapfile: Path,
+    joins: bool,
+    nodes: tuple[str, ...],
+    detached: bool = False,
+    virtual: VirtualTime | None = None,
 ) -> tuple[Run, Placement]:
     """Return the run of a mapfile or of some of its nodes, without starting it."""
     loaded = _only(load_mapfile(mapfile), nodes)
     occupied = occupied_cores(loaded.platform_name) if joins else ()
     placement = resolve(loaded, occupied)
-    return Run(placement, Mode(mapfile, joins, detached)), placement
+    if placement.is_virtual and virtual is None:
+        virtual = VirtualTime(factor=1.0)
+    return Run(placement, Mode(mapfile, joins, detached, virtual)), placement
+
+
+def virtual_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add --virtual, --instant and --factor to a command."""
+    virtual = click.option(
+        "--virtual",
+        is_flag=True,
+        help="Run in virtual time, which passes only while all nodes wait.",
+    )
+    instant = click.option(
+        "--instant", is_flag=True, help="In virtual time, callbacks take no time."
+    )
+    factor = click.option(
+        "--factor",
+        type=click.FloatRange(min=0, min_open=True),
+        metavar="F",
+        help="In virtual time, callbacks take F times their CPU time; 1 by default.",
+    )
+    return virtual(instant(factor(command)))
+
+
+def virtual_time(virtual: bool, instant: bool, factor: float | None) -> VirtualTime | None:
+    """Return what the options of `virtual_options` ask for."""
+    if instant and factor is not None:
+        raise click.UsageError("--instant and --factor exclude each other.")
+    if not (virtual or instant or factor is not None):
+        return None
+    return VirtualTime(0.0 if instant else factor or 1.0)
 
 
 def _only(mapfile: Mapfile, names: tuple[str, ...]) -> Mapfile:

@@ -27,6 +27,8 @@ START_TIMEOUT_S = 60
 FILES = {
     "library": "lib/librmw_manycore.so",
     "receive thread": "lib/rmw_manycore/manycore_receive_thread",
+    "timekeeper": "lib/rmw_manycore/manycore_timekeeper",
+    "virtual time": "lib/rmw_manycore/libmanycore_virtual_time.so",
     "scan matching worker": "lib/rmw_manycore/manycore_ndt_worker",
     "stand-ins": "lib/rmw_manycore/standin/librmw_fastrtps_cpp.so",
     "mapfiles": "share/rmw_manycore/mapfiles/whill.yaml",

@@ -317,6 +317,9 @@ class MapfileSections(Section):
     """A whole mapfile."""
 
     platform: PlatformSection = Field(default=PlatformSection(), description="The machine")
+    clock: Literal["wall", "virtual"] = Field(
+        default="wall", description="Time of the nodes: of the host, or of the platform"
+    )
     launch_path: Text | None = Field(
         default=None, description="ROS 2 launch file, relative to the mapfile"
     )

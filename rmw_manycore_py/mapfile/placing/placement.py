@@ -250,6 +250,7 @@ class Placement:
     :param host_cpus: host CPU of each core in use, those of receive threads and workers included.
     :param bridge: what crosses to DDS domains; None where nothing does.
     :param notices: what the user should know, although nothing is wrong.
+    :param is_virtual: whether the nodes live in virtual time.
     """
 
     name: str
@@ -260,3 +261,4 @@ class Placement:
     host_cpus: Mapping[Core, int]
     bridge: BridgePlacement | None
     notices: tuple[str, ...]
+    is_virtual: bool = False

@@ -115,4 +115,5 @@ def _placement(
             *overruled_prefixes(starts, nodes),
             *elsewhere(mapfile.platform_name, nodes),
         ),
+        is_virtual=mapfile.sections.clock == "virtual",
     )

@@ -1,0 +1,144 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Runs in virtual time are repeatable, whatever else the host does."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections import defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+
+import pytest
+
+from support import IS_MANYCORE
+from support.nodes import timed
+from support.processes.commands import manycore_command
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
+]
+
+START_NS = 10**18
+NS_PER_S = 10**9
+NODE = "  {name}: {{command: [{python}, {script}, {kind}], cluster: {cluster}{rules}}}\n"
+
+
+@pytest.fixture
+def mapfile(tmp_path: Path):
+    """Return a function that writes a mapfile of kinds of timed nodes, on two clusters."""
+
+    def write(*kinds: str, rules: str = "") -> Path:
+        file = tmp_path / "map.yaml"
+        nodes = (
+            NODE.format(
+                name=kind,
+                kind=kind,
+                python=sys.executable,
+                script=timed.__file__,
+                cluster=index % 2 + 1,
+                rules=rules,
+            )
+            for index, kind in enumerate(kinds)
+        )
+        file.write_text("platform: coolidge\nnodes:\n" + "".join(nodes))
+        return file
+
+    return write
+
+
+@pytest.fixture
+def log_of(start):
+    """Return a function that runs a mapfile in virtual time; it returns what each node printed."""
+
+    def run(mapfile: Path, duration_s: float, *options: str) -> dict[str, list[str]]:
+        time = ("--virtual", *(options or ("--instant",)), "--duration", f"{duration_s}")
+        run = start(manycore_command("run", mapfile, *time, "--json"))
+        run.wait_for(r'"event": "finished"')
+        assert run.wait() == 0
+        log = defaultdict(list)
+        for line in run.output.splitlines():
+            event = json.loads(line)
+            if event["event"] == "output":
+                log[event["node"]].append(event["line"])
+        return dict(log)
+
+    return run
+
+
+@contextmanager
+def busy_loops() -> Iterator[None]:
+    loops = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(3)]
+    try:
+        yield
+    finally:
+        for loop in loops:
+            loop.kill()
+            loop.wait()
+
+
+@contextmanager
+def one_cpu() -> Iterator[None]:
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(before)})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, before)
+
+
+def test_the_same_run_again_beside_load_and_on_one_cpu(mapfile, log_of) -> None:
+    file = mapfile("talker", "echo", "asker", "server")
+    logs = []
+    for condition in (nullcontext, busy_loops, one_cpu):
+        with condition():
+            logs.append(log_of(file, 2))
+    assert set(logs[0]) == {"talker", "echo", "asker"}
+    assert logs[1:] == [logs[0], logs[0]]
+    # A message is there, and answered, at the time at which it was published.
+    assert logs[0]["talker"] == [
+        f"heard talker {n} {at_ns} {at_ns}"
+        for n in range(1, 20)
+        for at_ns in [START_NS + n * NS_PER_S // 10]
+    ]
+    at_ns = START_NS + 7 * NS_PER_S // 100
+    assert logs[0]["echo"][0] == f"echo 1 {at_ns} {at_ns}"
+    # The server comes up at 0.3 s, which is seen at 0.5 s, and takes 20 ms for an answer.
+    at_ns = START_NS + NS_PER_S // 2
+    assert logs[0]["asker"][0] == f"server {at_ns} {at_ns}"
+    assert logs[0]["asker"][2] == (
+        f"answer server 2 {at_ns + 4 * NS_PER_S // 100} {at_ns + 4 * NS_PER_S // 100}"
+    )
+
+
+def test_threads_of_an_executor_hold_time_while_they_compute(mapfile, log_of) -> None:
+    log = log_of(mapfile("threads", "server"), 2.1)
+    assert log["threads"] == [
+        f"server {n} {START_NS + (50 + 25 * n + 2) * NS_PER_S // 100}" for n in range(1, 7)
+    ]
+
+
+def test_a_node_is_killed_and_starts_again_at_the_same_times(mapfile, log_of) -> None:
+    file = mapfile("talker", "mortal", rules=", respawn: true")
+    logs = [log_of(file, 3.5) for _ in range(2)]
+    assert logs[0] == logs[1]
+    births = [line for line in logs[0]["mortal"] if line.startswith("born")]
+    assert births == [f"born {START_NS + n * NS_PER_S} {START_NS + n * NS_PER_S}" for n in range(4)]
+
+
+def test_computing_takes_time(mapfile, log_of) -> None:
+    log = log_of(mapfile("talker", "echo"), 2, "--factor", "3")
+    times_ns = [int(line.split()[-1]) for line in log["talker"]]
+    assert times_ns == sorted(times_ns)
+    assert all(time_ns % (NS_PER_S // 10) != 0 for time_ns in times_ns)
+
+
+def test_a_bridge_is_refused(manycore) -> None:
+    text = manycore("run", "talker_listener", "--virtual", status=2)
+    assert "virtual time: the bridge lives in wall time" in text
+    text = manycore("run", "talker_listener", "--instant", "--factor", "2", status=2)
+    assert "--instant and --factor exclude each other" in text

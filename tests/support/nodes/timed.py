@@ -1,0 +1,137 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Nodes that print all they see with the time at which they see it: `timed.py NODE`."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from typing import Any
+
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+KILLED_AT_S = 1.0
+
+
+class Timed(Node):
+    """Base: prints."""
+
+    def __init__(self, name: str, **options: Any) -> None:
+        super().__init__(name, **options)
+        self._number = 0
+
+    def say(self, text: str) -> None:
+        """Print with the time of all clocks that a node may ask."""
+        print(text, self.get_clock().now().nanoseconds, time.time_ns(), flush=True)
+
+    def hear(self, topic: str) -> None:
+        """Print what is published on a topic."""
+        self.create_subscription(String, topic, lambda heard: self.say(f"heard {heard.data}"), 10)
+
+    def count(self) -> str:
+        """Return the next number."""
+        self._number += 1
+        return f"{self.get_name()} {self._number}"
+
+
+class Talker(Timed):
+    """Publishes by a timer; hears its echo at the same time."""
+
+    def __init__(self) -> None:
+        super().__init__("talker")
+        self.hear("echo")
+        publisher = self.create_publisher(String, "chatter", 10)
+        self.create_timer(0.1, lambda: publisher.publish(String(data=self.count())))
+
+
+class Echo(Timed):
+    """Publishes what it hears; its clock is that of simulations."""
+
+    def __init__(self) -> None:
+        super().__init__("echo", parameter_overrides=[Parameter("use_sim_time", value=True)])
+        publisher = self.create_publisher(String, "echo", 10)
+        self.create_subscription(String, "chatter", publisher.publish, 10)
+        self.create_timer(0.07, lambda: self.say(self.count()))
+
+
+class Server(Timed):
+    """Comes up late, and answers late."""
+
+    def __init__(self) -> None:
+        time.sleep(0.3)
+        super().__init__("server")
+        self.create_service(Trigger, "ask", self._answer)
+
+    def _answer(self, _: Any, answer: Any) -> Any:
+        time.sleep(0.02)
+        answer.message = self.count()
+        return answer
+
+
+class Asker(Timed):
+    """Waits for the server, then asks it again and again."""
+
+    def __init__(self) -> None:
+        super().__init__("asker")
+        self._client = self.create_client(Trigger, "ask")
+        while not self._client.wait_for_service(timeout_sec=1.0):
+            self.say("no server")
+        self.say("server")
+        self._ask()
+
+    def _ask(self) -> None:
+        self._client.call_async(Trigger.Request()).add_done_callback(self._hear)
+
+    def _hear(self, future: Any) -> None:
+        self.say(f"answer {future.result().message}")
+        self._ask()
+
+
+class Threads(Timed):
+    """A callback blocks a thread of the executor until another thread's callback ran."""
+
+    def __init__(self) -> None:
+        super().__init__("threads")
+        group = ReentrantCallbackGroup()
+        self._client = self.create_client(Trigger, "ask", callback_group=group)
+        self._client.wait_for_service()
+        self.create_timer(0.25, self._ask, callback_group=group)
+
+    def _ask(self) -> None:
+        answer = self._client.call(Trigger.Request())
+        print(answer.message, self.get_clock().now().nanoseconds, flush=True)
+
+
+class Mortal(Timed):
+    """Kills itself at a fixed time, once in its life."""
+
+    def __init__(self) -> None:
+        super().__init__("mortal")
+        self.hear("chatter")
+        self.create_timer(KILLED_AT_S, lambda: os.kill(os.getpid(), signal.SIGKILL))
+        self.say("born")
+
+
+KINDS = {kind.__name__.lower(): kind for kind in (Talker, Echo, Server, Asker, Threads, Mortal)}
+
+
+def main() -> None:
+    """Spin the node that the first argument names."""
+    rclpy.init()
+    try:
+        node = KINDS[sys.argv[1]]()
+        executor = MultiThreadedExecutor(3) if isinstance(node, Threads) else None
+        rclpy.spin(node, executor)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+
+
+if __name__ == "__main__":
+    main()
