@@ -3,9 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.native._transport import PlatformError
 
@@ -32,15 +29,24 @@ def refusal(what: str, expected: str, found: object) -> TransportError:
     return TransportError(f"{what}: expected {expected}, found {found}", EXIT_BAD_INPUT)
 
 
-@contextmanager
-def native_errors(subject: str) -> Iterator[None]:
+class native_errors:  # noqa: N801 (a context manager like contextlib's, on the way of a message)
     """Raise a TransportError about `subject` for an error of the native module.
 
     The native module raises ValueError if another thread has closed the object.
     """
-    try:
-        yield
-    except BufferError as error:
-        raise MessageInUseError(f"{subject}: {IN_USE}") from error
-    except (PlatformError, MemoryError, ValueError) as error:
-        raise TransportError(f"{subject}: {error or 'out of memory'}") from error
+
+    __slots__ = ("_subject",)
+
+    def __init__(self, subject: str) -> None:
+        self._subject = subject
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(
+        self, _: type[BaseException] | None, error: BaseException | None, *__: object
+    ) -> None:
+        if isinstance(error, BufferError):
+            raise MessageInUseError(f"{self._subject}: {IN_USE}") from error
+        if isinstance(error, (PlatformError, MemoryError, ValueError)):
+            raise TransportError(f"{self._subject}: {error or 'out of memory'}") from error

@@ -11,7 +11,7 @@ from typing_extensions import Self
 
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.transport.errors import IN_USE, MessageInUseError, TransportError
-from rmw_manycore_py.transport.multi_array import Scalar, layout_of
+from rmw_manycore_py.transport.multi_array import Heads, Scalar
 
 
 class Message(Generic[Scalar]):
@@ -24,12 +24,13 @@ class Message(Generic[Scalar]):
     :ivar publisher: GID of its publisher, 16 bytes.
     """
 
-    def __init__(self, claim: _transport.Claim, dtype: np.dtype[Scalar]) -> None:
+    def __init__(self, claim: _transport.Claim, dtype: np.dtype[Scalar], heads: Heads) -> None:
         self.sequence = claim.sequence
         self.source_timestamp_ns = claim.source_timestamp_ns
         self.publisher = claim.publisher
         self._claim: _transport.Claim | None = claim
         self._dtype = dtype
+        self._heads = heads
         self._array: NDArray[Scalar] | None = None
 
     @property
@@ -81,12 +82,11 @@ class Message(Generic[Scalar]):
         claim = self._claim
         if claim is None:
             raise TransportError("the message was released: use its array inside `with`, or copy()")
-        layout = layout_of(claim, claim.size, self._dtype.itemsize)
+        view = memoryview(claim)
+        layout = self._heads.layout_of(view, claim.size)
         dtype = self._dtype if layout.is_little_endian else self._dtype.newbyteorder(">")
         if layout.size == 0:
             return np.empty(layout.shape, dtype)
         # This keeps the view of the claim as long as an array lives, which np.ndarray() would not.
-        elements: NDArray[Scalar] = np.frombuffer(
-            memoryview(claim), dtype, layout.size, layout.offset_bytes
-        )
+        elements: NDArray[Scalar] = np.frombuffer(view, dtype, layout.size, layout.offset_bytes)
         return elements.reshape(layout.shape)

@@ -14,6 +14,7 @@ encapsulation.
 
 from __future__ import annotations
 
+import functools
 import math
 import operator
 import struct
@@ -40,6 +41,14 @@ _TAIL = struct.Struct("<II")
 # A record's size has 32 bits.
 MAX_MESSAGE_BYTES = (1 << 32) - 1
 MAX_DIMENSIONS = 32
+
+
+class Room(NamedTuple):
+    """What a message needs."""
+
+    shape: tuple[int, ...]
+    head: bytes
+    body_bytes: int
 
 
 class Layout(NamedTuple):
@@ -100,6 +109,13 @@ def head_of(shape: tuple[int, ...], itemsize: int) -> bytes:
     return b"".join(parts)
 
 
+@functools.lru_cache(maxsize=64, typed=True)
+def room_for(shape: int | tuple[int, ...], itemsize: int) -> Room:
+    """Return the room of an array's message; as `checked_shape` and `head_of`."""
+    sizes = checked_shape(shape)
+    return Room(sizes, head_of(sizes, itemsize), math.prod(sizes) * itemsize)
+
+
 def layout_of(message: Buffer, size_bytes: int, itemsize: int) -> Layout:
     """Read the head of a message.
 
@@ -112,6 +128,23 @@ def layout_of(message: Buffer, size_bytes: int, itemsize: int) -> Layout:
         return _read(message, size_bytes, itemsize)
     except struct.error as error:
         raise _malformed(f"it ends after {size_bytes} bytes") from error
+
+
+class Heads:
+    """Reads the heads of messages, of which one is mostly like the one before."""
+
+    def __init__(self, itemsize: int) -> None:
+        self._itemsize = itemsize
+        self._last: tuple[int, bytes, Layout | None] = (0, b"", None)
+
+    def layout_of(self, message: memoryview, size_bytes: int) -> Layout:
+        """Return the same as the function."""
+        last_bytes, head, layout = self._last
+        if layout is not None and size_bytes == last_bytes and message[: len(head)] == head:
+            return layout
+        layout = layout_of(message, size_bytes, self._itemsize)
+        self._last = (size_bytes, bytes(message[: layout.offset_bytes]), layout)
+        return layout
 
 
 def _read(message: Buffer, size_bytes: int, itemsize: int) -> Layout:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, Generic
 
 import numpy as np
@@ -19,7 +18,7 @@ from rmw_manycore_py.transport.errors import (
     refusal,
 )
 from rmw_manycore_py.transport.loan import Loan, array_in
-from rmw_manycore_py.transport.multi_array import Scalar, checked_shape, head_of
+from rmw_manycore_py.transport.multi_array import Scalar, checked_shape, head_of, room_for
 
 MAX_SUBSCRIPTIONS = 32_768
 
@@ -79,10 +78,10 @@ class Publisher(Closing, Generic[Scalar]):
             if the topic has a `topic_dsm_size` or a transfer: use `publish` there.
         """
         native = self._opened()
-        sizes = checked_shape(shape)
-        head = head_of(sizes, self.dtype.itemsize)
+        wanted = shape if isinstance(shape, (int, tuple)) else checked_shape(shape)
+        sizes, head, body_bytes = room_for(wanted, self.dtype.itemsize)
         with native_errors(self.topic):
-            room = native.lend(head, math.prod(sizes) * self.dtype.itemsize)
+            room = native.lend(head, body_bytes)
         if room is None:
             raise TransportError(
                 f"{self.topic}: its messages lie in a ring of fixed size or are transferred, so no "

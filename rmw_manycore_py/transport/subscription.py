@@ -18,7 +18,7 @@ from rmw_manycore_py.transport.errors import (
     native_errors,
 )
 from rmw_manycore_py.transport.message import Message
-from rmw_manycore_py.transport.multi_array import Scalar
+from rmw_manycore_py.transport.multi_array import Heads, Scalar
 
 
 class Subscription(Closing, Generic[Scalar]):
@@ -44,6 +44,7 @@ class Subscription(Closing, Generic[Scalar]):
         self.dtype = dtype
         self._process = process
         self._native: _transport.Subscription | None = native
+        self._heads = Heads(dtype.itemsize)
 
     def __repr__(self) -> str:
         return f"<Subscription to {self.dtype} on {self.topic}>"
@@ -57,6 +58,8 @@ class Subscription(Closing, Generic[Scalar]):
         :raises TransportError: if the subscription was closed, or the platform was removed.
         """
         deadline = Deadline(timeout_s)
+        if (ready := self.try_take()) is not None:
+            return ready
         while True:
             self._opened()
             with native_errors(self.topic):
@@ -73,7 +76,7 @@ class Subscription(Closing, Generic[Scalar]):
         native = self._opened()
         with native_errors(self.topic):
             claim = native.claim()
-        return None if claim is None else Message(claim, self.dtype)
+        return None if claim is None else Message(claim, self.dtype, self._heads)
 
     def take_copy(self, timeout_s: float | None = None) -> NDArray[Scalar]:
         """Return a copy of the next message's array; otherwise like `take`."""

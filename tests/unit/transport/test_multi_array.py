@@ -4,12 +4,20 @@
 from __future__ import annotations
 
 import struct
+from typing import Any
 
 import numpy as np
 import pytest
 
 from rmw_manycore_py.transport import TransportError
-from rmw_manycore_py.transport.multi_array import TYPES, checked_dtype, head_of, layout_of
+from rmw_manycore_py.transport.multi_array import (
+    TYPES,
+    Heads,
+    checked_dtype,
+    head_of,
+    layout_of,
+    room_for,
+)
 
 pytestmark = pytest.mark.unit
 
@@ -100,3 +108,17 @@ def test_a_type_without_a_message_is_refused(dtype: object) -> None:
 def test_a_number_is_no_array() -> None:
     with pytest.raises(TransportError, match="1 to 32 dimensions"):
         head_of((), 8)
+
+
+def test_heads_that_differ_are_read_anew() -> None:
+    heads = Heads(1)
+    for shape in [(2, 3), (3, 2), (3, 2), (6,), (2, 3)]:
+        message = memoryview(message_of(np.zeros(shape, np.uint8)))
+        assert heads.layout_of(message, len(message)) == layout_of(message, len(message), 1)
+        assert heads.layout_of(message, len(message)).shape == shape
+
+
+@pytest.mark.parametrize("shape", [-1, (1, -1), (), (1.5,), 1 << 40])
+def test_room_is_lent_for_shapes_that_a_message_can_have(shape: Any) -> None:
+    with pytest.raises(TransportError):
+        room_for(shape, 1)
