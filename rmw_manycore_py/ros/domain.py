@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import ctypes
-import math
 import os
 import re
 from collections.abc import Mapping
@@ -24,7 +23,10 @@ def ros_domain() -> int:
 
     :raises ManycoreError: if it is not a valid domain.
     """
-    return _own_domain(MAX_DOMAIN)
+    domain, rest = _number(_text())
+    if rest or domain > MAX_DOMAIN:
+        raise _refused()
+    return domain
 
 
 def default_platform(domain: int | None = None) -> str:
@@ -52,15 +54,22 @@ def is_elsewhere(node: Mapping[str, str], base: Mapping[str, str] = os.environ) 
     return _domain_of({**base, **node}) != _domain_of(base)
 
 
-def _own_domain(last: float = math.inf) -> int:
-    text = os.environ.get("ROS_DOMAIN_ID") or "0"
-    domain, rest = _number(text)
-    if rest or domain > last:
-        raise ManycoreError(
-            f"ROS_DOMAIN_ID: expected a number from 0 to {MAX_DOMAIN}, found '{text}'",
-            EXIT_BAD_INPUT,
-        )
+def _own_domain() -> int:
+    domain, rest = _number(_text())
+    if rest and domain == 0:  # rcl takes 7x for 7
+        raise _refused()
     return domain
+
+
+def _text() -> str:
+    return os.environ.get("ROS_DOMAIN_ID") or "0"
+
+
+def _refused() -> ManycoreError:
+    return ManycoreError(
+        f"ROS_DOMAIN_ID: expected a number from 0 to {MAX_DOMAIN}, found '{_text()}'",
+        EXIT_BAD_INPUT,
+    )
 
 
 def _domain_of(environment: Mapping[str, str]) -> int:
