@@ -25,6 +25,7 @@ VERBS = {
     "view": "rmw_manycore_py.cli.view:command",
     "trace": "rmw_manycore_py.cli.trace:command",
     "profile": "rmw_manycore_py.cli.profile:command",
+    "simulate": "rmw_manycore_py.cli.simulate:command",
     "topic": "rmw_manycore_py.cli.topic:command",
     "node": "rmw_manycore_py.cli.node:command",
     "service": "rmw_manycore_py.cli.service:command",
@@ -48,7 +49,7 @@ SECTIONS = {
         "run", "up", "ps", "logs", "restart", "attach", "stop", "demo", "map", "create", "bridge",
     ),
     "Look": ("status", "top", "view", "trace"),
-    "Plan": ("profile",),
+    "Plan": ("profile", "simulate"),
     "ROS 2": (
         "topic", "node", "service", "action", "param", "lifecycle", "interface", "component", "bag",
     ),

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.prediction.prediction import Prediction
 from rmw_manycore_py.prediction.sites import Site, Sites, sites_of
 from rmw_manycore_py.prediction.target import TARGETS, Target
@@ -33,14 +33,19 @@ def predict(
     :param sites: places of its nodes; `sites_of(placement)` returns those of a mapfile.
     :param chains: topics of the chains to evaluate; default: all causal chains.
     :param is_traced: whether the prediction has a trace; that of many nodes is large.
-    :raises ManycoreError: if the sites lack a node of the profile, or SimPy is not installed.
+    :raises ManycoreError: if the sites lack a node of the profile, nothing in it ran, or SimPy is
+        not installed.
     """
     require_simpy()
     from rmw_manycore_py.prediction.application import application_of
+    from rmw_manycore_py.prediction.attribution import attributed
     from rmw_manycore_py.prediction.outcome import outcome_of
     from rmw_manycore_py.prediction.simulation import Simulation
 
-    simulation = Simulation(application_of(profile), sites, target, seed, is_traced)
+    application = application_of(attributed(profile))
+    if not application.executors:
+        raise ManycoreError("the profile has no callback that ran", EXIT_BAD_INPUT)
+    simulation = Simulation(application, sites, target, seed, is_traced)
     simulation.run(duration_s)
     return outcome_of(simulation, duration_s, chains, is_traced)
 

@@ -18,6 +18,8 @@ from simpy.events import Timeout
 from rmw_manycore_py.process.scheduling import REAL_TIME, Scheduling
 
 _ROUNDING_NS = 0.5
+_RR_SLICE_NS = 100e6  # sched_rr_timeslice_ms of Linux
+_NEVER_NS = float("inf")
 
 
 @dataclass(eq=False)
@@ -30,7 +32,7 @@ class Task:
 
     cpus: Sequence[Cpu]
     rank: int = 0
-    is_sliced: bool = True
+    slice_ns: float | None = None  # of `rr`; None: that of its CPU, and of `fifo` none
     used_ns: float = 0.0
     virtual_ns: float = 0.0
     left_ns: float = 0.0
@@ -43,7 +45,9 @@ class Task:
         """Return a task with a policy of sched(7)."""
         if scheduling is None or scheduling.policy not in REAL_TIME:
             return cls(cpus)
-        return cls(cpus, scheduling.priority, scheduling.policy == "rr")
+        return cls(
+            cpus, scheduling.priority, _RR_SLICE_NS if scheduling.policy == "rr" else _NEVER_NS
+        )
 
     @property
     def is_demanding(self) -> bool:
@@ -116,32 +120,39 @@ class Cpu:
         self.current = task
         self._virtual_ns = max(self._virtual_ns, task.virtual_ns)
         self._since_ns = now
-        self._slice_end_ns = now + self.slice_ns
+        self._slice_end_ns = now + self._slice_of(task)
         if task is not self._last:
             task.left_ns += self.switch_ns
             self._last = task
-        self._schedule()
+        self._go_on()
 
     def _go_on(self) -> None:
         """Decide who runs on."""
         current = self.current
         assert current is not None
-        rank = max((one.rank for one in self.waiting), default=-1)
+        if not self.waiting:
+            self._schedule(is_shared=False)
+            return
+        rank = max([one.rank for one in self.waiting])
+        is_over = self.env.now >= self._slice_end_ns - _ROUNDING_NS
         if rank > current.rank:
             self._switch()
-        elif rank == current.rank and current.is_sliced and self.env.now >= self._slice_end_ns:
-            self._slice_end_ns = self.env.now + self.slice_ns
+        elif rank == current.rank and is_over:
+            self._slice_end_ns = self.env.now + self._slice_of(current)
             self._switch()
         else:
-            self._schedule()
+            self._schedule(is_shared=rank == current.rank)
 
-    def _schedule(self) -> None:
-        """Plan the end of the current task's demand, or of its slice."""
+    def _slice_of(self, task: Task) -> float:
+        return self.slice_ns if task.slice_ns is None else task.slice_ns
+
+    def _schedule(self, *, is_shared: bool) -> None:
+        """Plan the end of the current task's demand, or of its slice if others want the CPU."""
         current = self.current
         assert current is not None
         delay_ns = max(current.left_ns, 0.0)
-        if self.waiting and current.is_sliced:
-            delay_ns = min(delay_ns, max(self._slice_end_ns - self.env.now, 0.0))
+        if is_shared:
+            delay_ns = min(delay_ns, self._slice_end_ns - self.env.now)
         plan = Timeout(self.env, delay_ns)
         self._plan = plan
         callbacks: Any = plan.callbacks
@@ -178,9 +189,14 @@ class Cpu:
             self.current = None
             self._plan = None
             return
-        task = max(self.waiting, key=lambda one: (one.rank, -one.virtual_ns))
+        task = min(self.waiting, key=_order) if len(self.waiting) > 1 else self.waiting[0]
         self.waiting.remove(task)
         if task is self.current:
-            self._schedule()
+            self._go_on()
         else:
             self._start(task)
+
+
+def _order(task: Task) -> tuple[int, float]:
+    """Return a sort key: real-time tasks of a priority are in order of coming, others are not."""
+    return -task.rank, 0.0 if task.rank else task.virtual_ns

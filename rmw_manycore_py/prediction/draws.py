@@ -21,6 +21,17 @@ class Quantiles:
         self._shares = shares
         self._values = np.array(distribution.quantiles)
 
+    @property
+    def median(self) -> float:
+        """Return the median."""
+        return float(np.interp(0.5, self._shares, self._values))
+
+    @property
+    def mean(self) -> float:
+        """Return the mean of what `at` draws, which the last quantiles of a burst miss."""
+        values, shares = self._values, self._shares
+        return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(shares)))
+
     def at(self, share: Floats) -> Floats:
         """Return the quantiles at these shares."""
         found: Floats = np.interp(share, self._shares, self._values)

@@ -134,6 +134,7 @@ class ExecutorThread:
     _done_ns: float = 0.0
     _message: Message | None = None
     _claimed_ns: float = 0.0
+    _begin_ns: float = 0.0
 
     def woken(self, _: object) -> None:
         """Go on after a wait, as soon as a CPU is free."""
@@ -172,6 +173,7 @@ class ExecutorThread:
         work, now = self._work, self.env.now
         assert work is not None
         self._taken = None
+        self._begin_ns = now
         if work.subscription is not None:
             message = work.subscription.pop()
             if message is None:
@@ -214,7 +216,7 @@ class ExecutorThread:
         assert work is not None
         publisher = work.publishers[self._execution[1][self._step][1]]
         self._step += 1
-        self._message = message = publisher.new_message(now, self._taken)
+        self._message = message = publisher.new_message(now, self._taken, self._begin_ns)
         self.log.add(now, Kind.PUBLISH_BEGIN, publisher.endpoint, value=message.size_bytes)
         self._run(self._done_ns + publisher.publish_ns, self._written)
 
@@ -226,6 +228,8 @@ class ExecutorThread:
     def _end(self) -> None:
         work = self._work
         assert work is not None
+        if self._taken is not None:
+            self._taken.end_ns = self.env.now
         if work.group is not None:
             work.group.is_busy = False
         self.executor.done(work)

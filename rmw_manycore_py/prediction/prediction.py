@@ -29,6 +29,10 @@ class ChainTimes:
         """Return a quantile; None if no message went through."""
         return float(np.quantile(self.samples_us, share)) if self.samples_us else None
 
+    def late(self, deadline_ms: float) -> int:
+        """Return the number of messages that took longer."""
+        return sum(one > deadline_ms * 1e3 for one in self.samples_us)
+
     def row(self) -> dict[str, Any]:
         """Return the JSON row."""
         names = {"p50_us": 0.5, "p99_us": 0.99, "max_us": 1.0}

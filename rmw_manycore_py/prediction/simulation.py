@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,19 +13,29 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.platform.smem import DEFAULT_DEPTH
 from rmw_manycore_py.platform.topology import RECEIVE_THREAD_CORE, Core
 from rmw_manycore_py.prediction.application import Application, ExecutorPlan, period_of
+from rmw_manycore_py.prediction.attribution import rates_of_topics
 from rmw_manycore_py.prediction.cpu import Cpu, Task
-from rmw_manycore_py.prediction.draws import Blocks, Floats, Quantiles, samples
+from rmw_manycore_py.prediction.draws import Blocks, Quantiles, samples
 from rmw_manycore_py.prediction.events import EventLog
 from rmw_manycore_py.prediction.executors import Executor, ExecutorThread, Group, Work
 from rmw_manycore_py.prediction.network import Network
 from rmw_manycore_py.prediction.sites import Site, Sites
 from rmw_manycore_py.prediction.sources import Source, Timer, publication, request
 from rmw_manycore_py.prediction.target import Target
-from rmw_manycore_py.prediction.topics import Delivery, Publisher, ReceiveThread, Subscription
+from rmw_manycore_py.prediction.topics import (
+    Delivery,
+    Publisher,
+    ReceiveThread,
+    Subscription,
+    after,
+)
 from rmw_manycore_py.prediction.work import Demand, joins_of
 from rmw_manycore_py.profile.model import Callback, Distribution
+from rmw_manycore_py.trace.events import Kind
 
+_SAMPLE_NS = 100e6
 _FEW = 0.02  # of a publisher's messages: those outside of callbacks are of its start
+_BURST = 0.1  # of the mean interval: the median of one that is not steady
 _SHARED_SITE = Site(Core(1, 1))
 
 
@@ -59,7 +68,7 @@ class Simulation:
         self.target = target
         self._seed = seed
         self._is_traced = is_traced
-        self._shares = np.array(self.profile.quantile_shares)
+        self._points = np.array(self.profile.quantile_shares)
         self._cpus: dict[object, Cpu] = {}
         self.network = Network(target)
         self.receive_threads: dict[int, ReceiveThread] = {}
@@ -70,10 +79,13 @@ class Simulation:
         self.works: dict[int, Work] = {}
         self.timers: dict[int, Timer] = {}
         self._joins = joins_of(self.profile)
+        self._rates = rates_of_topics(self.profile)
         self._groups: dict[int, Group] = defaultdict(Group)
         for plan in application.executors:
             self._add_executor(plan)
         self._connect()
+        if is_traced:
+            self._sample(None)
         self._add_outside_publications()
 
     def random(self, *keys: int) -> np.random.Generator:
@@ -83,6 +95,24 @@ class Simulation:
     def run(self, duration_s: float) -> None:
         """Run for some time."""
         self.env.run(until=duration_s * 1e9)
+
+    def _sample(self, _: object) -> None:
+        """Record CPU time and held messages, as the tracer does from time to time."""
+        now = self.env.now
+        held: dict[int, int] = {one.cluster: one.total for one in self.sites.memory}
+        for publisher in self.publishers:
+            if publisher.ring_bytes is None:
+                cluster = publisher.cluster
+                held[cluster] = held.get(cluster, 0) + publisher.held_bytes
+        for placed in self.processes:
+            if not now:
+                placed.other.add(now, Kind.JOIN)
+            cluster = placed.site.core.cluster
+            placed.other.add(now, Kind.CPU, value=round(placed.used_ns))
+            placed.other.add(now, Kind.SMEM, number=cluster, value=held.get(cluster, 0))
+        for thread in self.receive_threads.values():
+            thread.log.add(now, Kind.CPU, value=round(thread.task.used_ns))
+        after(self.env, _SAMPLE_NS, self._sample)
 
     # -- CPUs and processes
 
@@ -95,6 +125,8 @@ class Simulation:
     def _cpus_of(self, site: Site) -> tuple[Cpu, ...]:
         if self.target.cpus == "cores":
             return (self._cpu(site.core),)
+        if self.target.cpus == "own":
+            return (self._cpu(object()),)
         if self.target.cpus == "shared":
             return tuple(map(self._cpu, range(round(self.target.cpu_count))))
         known = {cpu for one in self.sites.nodes.values() for cpu in one.host_cpus}
@@ -110,7 +142,7 @@ class Simulation:
             names = tuple(self.profile.nodes[index].name for index in plan.nodes)
             known = [site for name in names if (site := self.sites.of(name)) is not None]
             site = known[0] if known else _SHARED_SITE
-            if not known and self.target.cpus != "shared":
+            if not known and self.target.cpus not in ("shared", "own"):
                 raise ManycoreError(
                     f"the mapfile does not place {names[0]}, which is in the profile: use the "
                     "profile of this application (manycore profile record MAPFILE)",
@@ -153,7 +185,7 @@ class Simulation:
     def _blocks(self, distribution: Distribution | None, *keys: int) -> Blocks | None:
         if distribution is None:
             return None
-        return samples(self.random(*keys), Quantiles(self._shares, distribution))
+        return samples(self.random(*keys), Quantiles(self._points, distribution))
 
     def _subscription(self, index: int, executor: Executor, work: Work, placed: Placed) -> None:
         callback = self.profile.callbacks[index]
@@ -202,7 +234,7 @@ class Simulation:
         self.receive_threads[cluster] = ReceiveThread(
             self.env,
             cluster,
-            Task(cpus),
+            Task.of(cpus, self.sites.receive_scheduling),
             self.target.ns("receive_us") / self.target.speed,
             self._wake_ns,
             EventLog.new(self._is_traced),
@@ -221,28 +253,37 @@ class Simulation:
         self._match(publisher, known)
         happen = publication(self.env, self.delivery, publisher, EventLog.new(False))
         source = Source(self.env, intervals, happen)
-        source.start(self.random(4, indices[0]).random())
+        source.start(self._phase_ns(callback, 4, indices[0]))
 
     def _intervals(self, callback: Callback, *keys: int) -> Blocks:
-        if callback.interval_ns is not None:
-            return samples(self.random(*keys), Quantiles(self._shares, callback.interval_ns))
-        mean_ns = 1e9 / (callback.rate_hz or 1.0)
-        return Blocks(lambda count: np.full(count, mean_ns))
+        return self._at_rate(callback.interval_ns, callback.rate_hz or 1.0, *keys)
+
+    def _phase_ns(self, callback: Callback, *keys: int) -> float:
+        return float(self.random(*keys).random()) * 1e9 / (callback.rate_hz or 1.0)
+
+    def _at_rate(self, intervals_ns: Distribution | None, rate_hz: float, *keys: int) -> Blocks:
+        """Return intervals with the mean of a rate; a burst is spread over the run."""
+        mean_ns = 1e9 / rate_hz
+        if intervals_ns is None:
+            return Blocks(lambda count: np.full(count, mean_ns))
+        random, quantiles = self.random(*keys), Quantiles(self._points, intervals_ns)
+        if quantiles.median < _BURST * mean_ns:
+            return Blocks(lambda count: random.exponential(mean_ns, count))
+        scale = mean_ns / quantiles.mean
+        return Blocks(lambda count: quantiles.at(random.random(count)) * scale)
 
     def _add_outside_publications(self) -> None:
         placed = self._process_of_node()
+        span_ns = self.profile.duration_ns
         for index, one in enumerate(self.profile.publishers):
             few = _FEW * (one.publications or 0)
-            if not one.outside_callbacks or one.outside_callbacks <= few or not one.interval_ns:
+            if not span_ns or not one.outside_callbacks or one.outside_callbacks <= few:
                 continue
-            scale = (one.publications or 0) / one.outside_callbacks
-            quantiles = Quantiles(self._shares, one.interval_ns)
-            random = self.random(5, index)
-            intervals = Blocks(_scaled(random, quantiles, scale))
-            publisher = self.publishers[index]
+            rate_hz = one.outside_callbacks * 1e9 / span_ns
             log = EventLog.new(False) if one.node is None else placed[one.node].other
-            happen = publication(self.env, self.delivery, publisher, log)
-            Source(self.env, intervals, happen).start(random.random())
+            happen = publication(self.env, self.delivery, self.publishers[index], log)
+            source = Source(self.env, self._at_rate(one.interval_ns, rate_hz, 5, index), happen)
+            source.start(self.random(11, index).random() * 1e9 / rate_hz)
 
     # -- executors
 
@@ -251,9 +292,8 @@ class Simulation:
         executor = Executor(self.env, self._wake_ns)
         for order, index in enumerate(plan.callbacks):
             self._add_work(index, order, executor, placed)
-        cpus = self._cpus_of(placed.site)
         for _ in range(plan.threads):
-            task = Task.of(cpus, placed.site.scheduling)
+            task = Task.of(self._cpus_of(placed.site), placed.site.scheduling)
             log = EventLog.new(self._is_traced)
             placed.threads.append((task, log))
             thread = ExecutorThread(
@@ -273,7 +313,13 @@ class Simulation:
         work = Work(
             index,
             order,
-            Demand(self.profile, callback, self.random(6, index), self.target.speed, {}),
+            Demand(
+                self.profile,
+                callback,
+                self.random(6, index),
+                self.target.speed,
+                self._shares_of(callback),
+            ),
             self._dispatch(callback, index),
             {one.publisher: self.publishers[one.publisher] for one in callback.publishes},
             None if group is None else self._groups[group],
@@ -289,7 +335,16 @@ class Simulation:
             timer.start(self.random(7, index).random())
         else:
             source = Source(self.env, self._intervals(callback, 8, index), request(executor, work))
-            source.start(self.random(9, index).random())
+            source.start(self._phase_ns(callback, 9, index))
+
+    def _shares_of(self, callback: Callback) -> dict[int, float]:
+        """Return publications per execution, where the profile has rates only."""
+        found: dict[int, float] = {}
+        for output in callback.publishes:
+            rate_hz = self._rates.get(self.profile.publishers[output.publisher].topic)
+            if output.count is None and rate_hz and callback.rate_hz:
+                found[output.publisher] = min(rate_hz / callback.rate_hz, 1.0)
+        return found
 
     def _dispatch(self, callback: Callback, index: int) -> Blocks:
         found = self._blocks(callback.dispatch_ns, 10, index)
@@ -299,9 +354,3 @@ class Simulation:
             return Blocks(lambda count: np.array([values.next() for _ in range(count)]) / speed)
         default_ns = self.target.ns("dispatch_us") / speed
         return Blocks(lambda count: np.full(count, default_ns))
-
-
-def _scaled(
-    random: np.random.Generator, quantiles: Quantiles, scale: float
-) -> Callable[[int], Floats]:
-    return lambda count: quantiles.at(random.random(count)) * scale

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from rmw_manycore_py.mapfile import ClusterMemory, Placement
 from rmw_manycore_py.platform.topology import RECEIVE_THREAD_CORE, Core
@@ -33,6 +33,7 @@ class Sites:
     :ivar rings: bytes of each topic DSM of fixed size, by topic.
     :ivar transferred: topics that are copied to other clusters before their readers are notified.
     :ivar memory: of each cluster when nodes have started, if it is known.
+    :ivar receive_scheduling: of receive threads; they have that of what starts the nodes.
     """
 
     nodes: Mapping[str, Site]
@@ -42,6 +43,15 @@ class Sites:
     transferred: frozenset[str] = frozenset()
     memory: tuple[ClusterMemory, ...] = ()
     bridge: Mapping[str, Site] = field(default_factory=dict)  # by direction
+    receive_scheduling: Scheduling | None = None
+
+    def scheduled(self, scheduling: Scheduling) -> Sites:
+        """Return the places with everything scheduled like this."""
+        return replace(
+            self,
+            nodes={name: replace(one, scheduling=scheduling) for name, one in self.nodes.items()},
+            receive_scheduling=scheduling,
+        )
 
     def of(self, node: str) -> Site | None:
         """Return the place of a node or of a bridge's node."""

@@ -45,9 +45,9 @@ class Source:
     intervals_ns: Blocks
     happen: Callable[[], None]
 
-    def start(self, phase: float) -> None:
-        """Begin within an interval."""
-        after(self.env, phase * self.intervals_ns.next(), self._come)
+    def start(self, delay_ns: float) -> None:
+        """Come for the first time after a delay."""
+        after(self.env, delay_ns, self._come)
 
     def _come(self, _: object) -> None:
         self.happen()
@@ -70,7 +70,7 @@ def publication(
     """Return a publication outside of callbacks."""
 
     def happen() -> None:
-        message = publisher.new_message(env.now, None)
+        message = publisher.new_message(env.now, None, env.now)
         log.add(env.now, Kind.PUBLISH_BEGIN, publisher.endpoint, value=message.size_bytes)
         delivery.deliver(message, log)
 

@@ -12,7 +12,7 @@ from typing import Any, Literal, get_args
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 
 Source = Literal["published", "measured here", "fitted", "unknown", "chosen"]
-Cpus = Literal["host", "cores", "shared"]
+Cpus = Literal["host", "cores", "shared", "own"]
 Network = Literal["memory", "bus", "bostan"]
 SOURCES: tuple[str, ...] = get_args(Source)
 
@@ -26,7 +26,7 @@ class Target:
     """A platform's parameters; times are CPU times unless they say otherwise.
 
     :ivar cpus: `host`: cores share host CPUs as placed; `cores`: each core is a CPU of its own;
-        `shared`: any thread runs on any of `cpu_count` CPUs.
+        `shared`: any thread runs on any of `cpu_count` CPUs; `own`: each thread has a CPU.
     :ivar network: what a message passes between clusters.
     :ivar sources: where the value of each parameter comes from.
     """

@@ -7,6 +7,7 @@ does so when the eMCOS message has come, and the subscriber reads the record acr
 
 from __future__ import annotations
 
+from array import array
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -20,6 +21,10 @@ from rmw_manycore_py.prediction.draws import Blocks
 from rmw_manycore_py.prediction.events import EventLog
 from rmw_manycore_py.prediction.network import Network
 from rmw_manycore_py.trace.events import Kind
+
+
+def _floats() -> array[float]:
+    return array("d")
 
 
 @dataclass(eq=False, slots=True)
@@ -42,6 +47,7 @@ class Taken:
     message: Message
     subscription: Subscription
     callback_ns: float
+    end_ns: float = 0.0  # 0: not yet
 
 
 @dataclass(eq=False)
@@ -105,17 +111,21 @@ class Publisher:
     peak_bytes: int = 0
     overwritten: int = 0
     published_bytes: int = 0
+    times_ns: array[float] = field(default_factory=_floats)
+    begins_ns: array[float] = field(default_factory=_floats)  # of the publishing callbacks
 
     @property
     def readers(self) -> int:
         """Number of subscriptions."""
         return len(self.near) + sum(map(len, self.far.values()))
 
-    def new_message(self, now: float, cause: Taken | None) -> Message:
+    def new_message(self, now: float, cause: Taken | None, begin_ns: float) -> Message:
         """Write a record; the oldest ones give way if the topic DSM is full."""
         size_bytes = int(self.sizes.next()) if self.sizes else 0
         message = Message(self, self.number, now, size_bytes, cause, self.readers)
         self.number += 1
+        self.times_ns.append(now)
+        self.begins_ns.append(begin_ns)
         self.published_bytes += size_bytes
         if message.unread:
             self._hold(message)

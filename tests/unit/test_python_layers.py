@@ -50,7 +50,7 @@ LAYERS = [
 ]
 # The rooms in one of these, likewise. "": the room itself.
 INNER_LAYERS = {
-    ".bench": [("", ".nodes"), (".ndt", ".scale")],
+    ".bench": [("", ".nodes"), (".ndt", ".predict", ".scale")],
     ".cli": [
         (".common", ".topic.meters"),
         (".doctor.report",),

@@ -1,0 +1,168 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore bench predict`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import click
+from rich.console import Console
+
+from rmw_manycore_py.bench.machine import machine_header
+from rmw_manycore_py.bench.predict.errors import MappingError, Order, error_of, order_of
+from rmw_manycore_py.bench.predict.reports import ReportedChain, reported_chains
+from rmw_manycore_py.bench.predict.runs import Compared, Plan, compared
+from rmw_manycore_py.cli.common.duration import duration_option
+from rmw_manycore_py.cli.common.options import examples, json_option, number_option
+from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.mapfile.installed import find_mapfile
+from rmw_manycore_py.prediction import require_simpy
+
+APPLICATIONS = ("autoware_reference", "image_pipeline")
+
+
+@click.command(
+    "predict",
+    epilog=examples(
+        "manycore bench predict -o build/predict",
+        "manycore bench predict image_pipeline --mappings 4 --repetitions 2 -o build/predict",
+        "manycore bench predict --report caret_report --mappings 0 -o build/predict",
+    ),
+)
+@click.argument("mapfiles", nargs=-1, metavar="[MAPFILE]...")
+@number_option("--mappings", within=(0, None), default=20, help="Random mappings of each.")
+@number_option("--repetitions", within=(1, None), default=5, help="Runs of each mapping.")
+@duration_option(10.0, "Length of a run.")
+@number_option("--seed", within=(0, None), default=1, help="Seed of mappings and predictions.")
+@click.option(
+    "--report",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="Also predict the chains of a CARET report, whose latencies it holds.",
+)
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(file_okay=False, path_type=Path),
+    help="Directory of profiles, mappings and runs; a second start goes on there.",
+)
+@json_option
+def command(
+    mapfiles: tuple[str, ...],
+    mappings: int,
+    repetitions: int,
+    duration_s: float,
+    seed: int,
+    report: Path | None,
+    output: Path,
+    as_json: bool,
+) -> None:
+    """Compare predictions with measurements.
+
+    Records a profile of each MAPFILE, by default of autoware_reference and image_pipeline, runs
+    its nodes on random cores and host CPUs, and predicts these runs from the profile.
+    """
+    require_simpy()
+    progress = Console(stderr=True)
+    found: dict[str, list[Compared]] = {}
+    with progress.status("bench predict") as status:
+        for name in (mapfiles or APPLICATIONS) if mappings else ():
+            mapfile = find_mapfile(name)
+            if mapfile is None:
+                raise ManycoreError(f"there is no mapfile {name}", EXIT_BAD_INPUT)
+            directory = output / mapfile.stem
+            plan = Plan(mapfile, directory, mappings, repetitions, duration_s, seed)
+            found[plan.name] = compared(plan, status.update)
+        chains = reported_chains(report, seed) if report else []
+    rows = {name: _row(of) for name, of in found.items()}
+    if as_json:
+        print_json(
+            {
+                "machine": machine_header(),
+                "applications": rows,
+                "report": [asdict(one) for one in chains],
+            }
+        )
+        return
+    for name, of in found.items():
+        _show(name, of)
+    if chains:
+        _show_report(chains)
+
+
+def _row(mappings: Sequence[Compared]) -> dict[str, Any]:
+    errors = [error_of(one) for one in mappings]
+    light = [one for one in errors if one.is_light]
+    return {
+        "mappings": [{**asdict(one), "is_light": one.is_light} for one in errors],
+        "all": _summary(errors),
+        "light": _summary(light),
+        "order": asdict(order_of(mappings)),
+    }
+
+
+def _summary(errors: Sequence[MappingError]) -> dict[str, Any]:
+    p50 = [abs(error) for one in errors for error in one.p50]
+    p99 = [abs(error) for one in errors for error in one.p99]
+    return {
+        "mappings": len(errors),
+        "p50_median": median(p50) if p50 else None,
+        "p50_max": max(p50, default=None),
+        "p99_median": median(p99) if p99 else None,
+        "load_points_max": max((one.load_points for one in errors), default=None),
+    }
+
+
+def _show(name: str, mappings: Sequence[Compared]) -> None:
+    echo(f"\n{name}")
+    table = new_table(
+        "#mapping", "#load", "#chains", "#p50 error", "#largest", "#p99", "#load points"
+    )
+    errors = [error_of(one) for one in mappings]
+    for one in errors:
+        p50, p99 = ([abs(error) for error in found] for found in (one.p50, one.p99))
+        table.add_row(
+            str(one.number),
+            f"{one.load:.0%}",
+            str(len(p50)),
+            _percent(median(p50) if p50 else None),
+            _percent(max(p50, default=None)),
+            _percent(median(p99) if p99 else None),
+            f"{one.load_points:.1f}",
+            f"{one.others:.0%}",
+        )
+    print_table(table)
+    for label, chosen in (
+        ("all mappings", errors),
+        ("under 60 % load", [one for one in errors if one.is_light]),
+    ):
+        found = _summary(chosen)
+        echo(
+            f"{label} ({found['mappings']}): p50 {_percent(found['p50_median'])} in the median, "
+            f"{_percent(found['p50_max'])} at most; p99 {_percent(found['p99_median'])}"
+        )
+    echo(_order_text(order_of(mappings)))
+
+
+def _order_text(order: Order) -> str:
+    if order.tau is None:
+        return "order: no pair of mappings whose intervals are apart"
+    return f"order: Kendall tau {order.tau:.2f} over {order.pairs} pairs"
+
+
+def _show_report(chains: Sequence[ReportedChain]) -> None:
+    echo("\nCARET report, best case p50")
+    table = new_table("chain", "#measured ms", "#predicted ms", "#error")
+    for one in chains:
+        texts = (f"{one.measured_ms:.1f}", f"{one.predicted_ms:.1f}", f"{one.error:+.1%}")
+        table.add_row(one.chain, *texts)
+    print_table(table)
+
+
+def _percent(value: float | None) -> str:
+    return "-" if value is None else f"{value:.1%}"
