@@ -116,6 +116,7 @@ install_for_tests() {
   install_extra trace
   install_extra record
   install_extra view
+  install_extra zenoh
   touch .venv/tests
 }
 

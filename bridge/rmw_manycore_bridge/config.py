@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Loads a bridge file, in the YAML schema of ros2/domain_bridge, as routes of a platform.
 
-The platform's own domain ID (`inside`) stands for the platform; the others are DDS domains.
-Services, actions, rate and size limits, and topic patterns extend that schema.
+The platform's own domain ID (`inside`) stands for the platform; the others are domains outside.
+Services, actions, rate and size limits, topic patterns, and `outside` extend that schema.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.document import Document, read_yaml
 from rmw_manycore_py.mapfile.format.model import (
     Domain,
+    OutsideSection,
     QosSection,
     Rate,
     Section,
@@ -30,6 +31,7 @@ from rmw_manycore_py.mapfile.format.values import ActionType, MessageType, Servi
 from rmw_manycore_py.mapfile.placing.crossings import overrides
 from rmw_manycore_py.ros.names import expand
 from rmw_manycore_py.ros.patterns import is_pattern
+from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import (
     REQUEST_TIMEOUT_S,
     Direction,
@@ -91,6 +93,7 @@ class BridgeFile(Section):
 
     name: Text | None = None
     mode: Literal["normal"] = "normal"
+    outside: OutsideSection = OutsideSection()
     from_domain: Domain | None = None
     to_domain: Domain | None = None
     topics: tuple[tuple[TopicPattern, TopicCrossing], ...] = Field(default=())
@@ -101,6 +104,11 @@ class BridgeFile(Section):
 def load_bridge_file(
     path: Path, inside: int, note: Callable[[str], None] = lambda _: None
 ) -> tuple[Route, ...]:
+    """Return the routes of a bridge file; see `load_plan`."""
+    return load_plan(path, "", inside, note).routes
+
+
+def load_plan(path: Path, platform: str, inside: int, note: Callable[[str], None]) -> Plan:
     """Read and validate a bridge file for the platform whose domain is `inside`.
 
     Entries between two other domains are skipped and reported through `note`; if the file has no
@@ -116,7 +124,8 @@ def load_bridge_file(
     except ValidationError as error:
         problems = [_problem(document, dict(details)) for details in error.errors()]
     else:
-        return _Resolver(document, sections, inside, note).routes()
+        routes = _Resolver(document, sections, inside, note).routes()
+        return Plan(platform, routes, sections.outside.settings)
     raise MapfileError(*problems)
 
 

@@ -10,6 +10,7 @@ from rmw_manycore_py.routes.outside import EngineName
 
 _CLASSES: dict[EngineName, str] = {
     "fastdds": "rmw_manycore_bridge.fastdds.outside:FastDds",
+    "zenoh": "rmw_manycore_bridge.zenoh.outside:Zenoh",
 }
 
 

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 from contextlib import closing
+from importlib.util import find_spec
 
 from rmw_manycore_program import own_program
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.events import Finished
 from rmw_manycore_py.launch.processes.environment import outside_environment
 from rmw_manycore_py.launch.processes.program import NodeProgram
@@ -25,7 +27,8 @@ def bridge_programs(placement: Placement) -> list[NodeProgram]:
     bridge = placement.bridge
     if bridge is None:
         return []
-    plan = Plan(placement.name, bridge.routes)
+    plan = Plan(placement.name, bridge.routes, bridge.outside)
+    _require_engine(plan)
     return [
         bridge_program(plan, direction, lane, core, bridge.host_cpus)
         for lane in range(len(bridge.cores))
@@ -37,6 +40,7 @@ def bridge_programs(placement: Placement) -> list[NodeProgram]:
 
 def run_bridge(plan: Plan, report: Report) -> int:
     """Run the bridge of a running platform until a signal."""
+    _require_engine(plan)
     programs = [
         bridge_program(plan, direction, 0, core, host_cpus=())
         for direction, core in zip(DIRECTIONS, _STANDALONE_CORES, strict=True)
@@ -46,6 +50,13 @@ def run_bridge(plan: Plan, report: Report) -> int:
         exit_status = runner.run(inbox)
         report(Finished(runner.failed, exit_status))
     return exit_status
+
+
+def _require_engine(plan: Plan) -> None:
+    if plan.outside.engine == "zenoh" and None in map(find_spec, ("zenoh", "xxhash")):
+        raise ManycoreError(
+            "the bridge's engine zenoh is not installed: pip install 'rmw-manycore[zenoh]'"
+        )
 
 
 def bridge_program(

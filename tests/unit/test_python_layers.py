@@ -85,7 +85,7 @@ INNER_LAYERS = {
     ".platform": [("",), (".monitor",)],
     ".recording": [("",), (".play", ".record")],
     ".trace": [("",), (".files",)],
-    "rmw_manycore_bridge": [(".outside",), (".fastdds",), ("",)],
+    "rmw_manycore_bridge": [(".outside",), (".fastdds", ".zenoh"), ("",)],
 }
 MAX_LAYERS = 20
 

@@ -35,4 +35,4 @@ class _BridgeGroup(LazyGroup):
     epilog=examples("manycore bridge domain_bridge.yaml", "manycore bridge status"),
 )
 def command() -> None:
-    """Bridge topics and services to DDS domains."""
+    """Bridge topics and services to other domains."""

@@ -8,13 +8,12 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_bridge.config import load_bridge_file
+from rmw_manycore_bridge.config import load_plan
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.launch.bridge import run_bridge
 from rmw_manycore_py.ros.domain import MAX_DOMAIN, ros_domain
-from rmw_manycore_py.routes.plan import Plan
 
 
 @click.command("run", epilog=examples("manycore bridge run domain_bridge.yaml --platform robot"))
@@ -31,9 +30,9 @@ def command(config: Path, inside: int, platform: str) -> None:
     """Run the bridge described by CONFIG.
 
     In the YAML schema of domain_bridge. One side of each entry has to be the platform's domain;
-    the other side is a real DDS domain.
+    the other side is a DDS domain, or one of rmw_zenoh.
     """
-    plan = Plan(platform, load_bridge_file(config, inside, _warn))
+    plan = load_plan(config, platform, inside, _warn)
     sys.exit(run_bridge(plan, RunPrinter().report))
 
 

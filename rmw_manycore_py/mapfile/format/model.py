@@ -37,6 +37,7 @@ from rmw_manycore_py.process.scheduling import MAX_PRIORITY, MIN_PRIORITY, REAL_
 from rmw_manycore_py.ros.domain import MAX_DOMAIN, PLATFORM_NAME
 from rmw_manycore_py.ros.names import MAX_NODE_NAME, MAX_TOPIC_NAME, NAME_PART
 from rmw_manycore_py.ros.patterns import is_pattern
+from rmw_manycore_py.routes.outside import EngineName, OutsideSettings
 
 # Receiver clusters are a 64-bit mask.
 MAX_CLUSTERS = 64
@@ -182,9 +183,39 @@ class RouteSection(Section):
     timeout: Timeout | None = Field(default=None, description="Timeout of a request in seconds")
 
 
-class BridgeSection(Section):
-    """The bridge to external DDS domains."""
+Locator = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_-]*/\S+$")]
 
+
+class OutsideSection(Section):
+    """What the bridge speaks outside."""
+
+    engine: EngineName = Field(default="fastdds", description="fastdds or zenoh")
+    mode: Literal["rmw_zenoh"] | None = Field(
+        default=None, description="What zenoh's peers are; rmw_zenoh is the default"
+    )
+    connect: tuple[Locator, ...] = Field(
+        default=(), description="Locators of zenoh routers; default: tcp/localhost:7447"
+    )
+
+    @model_validator(mode="after")
+    def _check_engine(self) -> Self:
+        for key in ("mode", "connect"):
+            if self.engine != "zenoh" and key in self.model_fields_set:
+                raise refusal(f"no {key} beside the engine {self.engine}", found=key, name=key)
+        return self
+
+    @property
+    def settings(self) -> OutsideSettings:
+        """Settings of a bridge process."""
+        return OutsideSettings(self.engine, self.connect)
+
+
+class BridgeSection(Section):
+    """The bridge to external domains."""
+
+    outside: OutsideSection = Field(
+        default=OutsideSection(), description="Engine outside; default: Fast DDS"
+    )
     domain: Domain | None = Field(
         default=None, description="External ROS domain; default: $ROS_DOMAIN_ID"
     )
@@ -340,9 +371,7 @@ class MapfileSections(Section):
         default=True,
         description="Keep glibc from returning memory to the system after each message",
     )
-    bridge: BridgeSection = Field(
-        default=BridgeSection(), description="Bridge to external DDS domains"
-    )
+    bridge: BridgeSection = Field(default=BridgeSection(), description="Bridge to external domains")
     topics: dict[TopicName, TopicSection] = Field(
         default_factory=dict, description="Topics with a fixed type, topic DSM size or transfer"
     )

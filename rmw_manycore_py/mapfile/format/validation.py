@@ -16,6 +16,7 @@ from rmw_manycore_py.mapfile.format.model import (
     BridgeSection,
     MapfileSections,
     NodeSection,
+    OutsideSection,
     PlatformSection,
     QosSection,
     RespawnSection,
@@ -51,6 +52,7 @@ _PATTERN_OF = {
     "service_to": "a service type such as std_srvs/srv/SetBool",
     "action_in": "an action type such as example_interfaces/action/Fibonacci",
     "action_to": "an action type such as example_interfaces/action/Fibonacci",
+    "connect": "a locator such as tcp/localhost:7447",
     "prefix": "a namespace such as /robot1",
     "namespace": "a namespace such as /demo",
     "remappings": "the name of a topic, service or node",
@@ -148,7 +150,7 @@ def _known_keys(path: KeyPath) -> str:
 
 def _section(path: KeyPath) -> type[BaseModel]:
     if path[0] == "bridge" and len(path) > 1:
-        parts: dict[int, type[BaseModel]] = {2: BridgeSection, 4: RouteSection}
+        parts: dict[int, type[BaseModel]] = {2: BridgeSection, 3: OutsideSection, 4: RouteSection}
         return parts.get(len(path), QosSection)
     if path[0] == "nodes" and len(path) > 3:
         return RespawnSection if path[2] == "respawn" else SchedulingSection

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a mapfile bridges to DDS, and where the bridge runs."""
+"""What a mapfile bridges to the outside, and where the bridge runs."""
 
 from __future__ import annotations
 
@@ -62,7 +62,8 @@ def bridge_placement(
     # If all cores are taken, the bridge shares the last one.
     cores = [*free, *[Core(1, first.free[-1])] * 2 * bridge.lanes]
     lanes = tuple((cores[2 * i], cores[2 * i + 1]) for i in range(bridge.lanes))
-    return BridgePlacement(arranged(routes, bridge.lanes), lanes, bridge.host_cpu or ())
+    placed = arranged(routes, bridge.lanes)
+    return BridgePlacement(placed, lanes, bridge.host_cpu or (), bridge.outside.settings)
 
 
 def _routes_of(bridge: BridgeSection, node: NodeSection, start: NodeStart) -> Iterator[Route]:

@@ -15,6 +15,7 @@ from rmw_manycore_py.platform.topology import Core, Topology, room_for_topic_dsm
 from rmw_manycore_py.platform.transfers import transfer_text
 from rmw_manycore_py.process.scheduling import Scheduling
 from rmw_manycore_py.ros.names import file_stem
+from rmw_manycore_py.routes.outside import OutsideSettings
 from rmw_manycore_py.routes.route import DIRECTIONS, Direction, Route
 
 PARAMETERS = "parameters"  # directory of generated files, of a run and of `manycore create`
@@ -232,6 +233,7 @@ class BridgePlacement:
     routes: tuple[Route, ...]
     cores: tuple[tuple[Core, Core], ...]
     host_cpus: tuple[int, ...] = ()
+    outside: OutsideSettings = field(default_factory=OutsideSettings)
 
     def core(self, direction: Direction, lane: int) -> Core:
         """Return the core of a bridge process."""
@@ -248,7 +250,7 @@ class Placement:
     :param topics: topic table, as far as sources and mapfile name topics.
     :param memory: what topic DSMs of fixed size take of each cluster.
     :param host_cpus: host CPU of each core in use, those of receive threads and workers included.
-    :param bridge: what crosses to DDS domains; None where nothing does.
+    :param bridge: what crosses to the outside; None where nothing does.
     :param notices: what the user should know, although nothing is wrong.
     :param is_virtual: whether the nodes live in virtual time.
     """

@@ -142,5 +142,6 @@ def _bridge(bridge: BridgePlacement) -> dict[str, Any]:
     return {
         "cores": [[list(core) for core in lane] for lane in bridge.cores],
         "host_cpus": list(bridge.host_cpus),
+        "outside": asdict(bridge.outside),
         "routes": [asdict(route) for route in bridge.routes],
     }

@@ -3,13 +3,17 @@
 
 from __future__ import annotations
 
+import copy
 import sys
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from rmw_manycore_bridge.status import status
+from rmw_manycore_py.routes.outside import OutsideSettings
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import DIRECTIONS, Direction, Route, arranged
+from support.nodes.zenoh_peers import free_port, locator, route
 from support.peers.programs import forked_node
 from support.processes.commands import peer_command
 from support.processes.domains import domain_of
@@ -21,6 +25,8 @@ STRING = "std_msgs/msg/String"
 
 class Bridge:
     """Start bridge processes and nodes; they all end with the test."""
+
+    settings = OutsideSettings()
 
     def __init__(self, start: Callable[..., Program], platform: str) -> None:
         self._start = start
@@ -39,7 +45,7 @@ class Bridge:
 
     def run(self, *routes: Route) -> dict[str, Program]:
         """Start the processes that the routes need; return them by direction."""
-        plan = Plan(self.platform, arranged(routes, 1))
+        plan = Plan(self.platform, arranged(routes, 1), self.settings)
         return {way: self.run_one(plan, way) for way in DIRECTIONS if plan.of(way, 0)}
 
     def run_lanes(self, lanes: int, way: Direction, *routes: Route) -> list[Program]:
@@ -67,9 +73,44 @@ class Bridge:
 
     def row(self, direction: Direction, name: str) -> dict[str, Any]:
         """Return the counters of a route; None before its process has counted."""
-        rows = status(self.platform)
-        found = [r for r in rows if (r["direction"], r["inside"]) == (direction, name)]
+        found = [r for r in self.rows() if (r["direction"], r["inside"]) == (direction, name)]
         return found[0] if found else {}
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Return the counters of all routes."""
+        return status(self.platform)
+
+
+class ZenohBridge(Bridge):
+    """Bridge to rmw_zenoh, with a router."""
+
+    def __init__(self, start: Callable[..., Program], platform: str) -> None:
+        super().__init__(start, platform)
+        self.port = free_port()
+        self.settings = OutsideSettings("zenoh", (locator(self.port),))
+        self.start_router()
+
+    def beside(self, platform: str) -> ZenohBridge:
+        """Return the bridge of another platform in the same domain."""
+        made = copy.copy(self)
+        made.platform = platform
+        made._start = partial(self._start, MANYCORE_PLATFORM=platform)
+        return made
+
+    def start_router(self) -> None:
+        """Start the router, or another one in its place."""
+        self.router = self._start(peer_command(route, self.port), **OUTSIDE)
+        self.router.wait_for("^routing$")
+
+    def outside(self, function: Callable[..., None], *arguments: Any, **env: str) -> Program:
+        """Start a peer in the domain."""
+        return self.outside_of_domain(function, self.domain, *arguments, **env)
+
+    def outside_of_domain(
+        self, function: Callable[..., None], *arguments: Any, **env: str
+    ) -> Program:
+        """Start a peer that has no domain."""
+        return self._start(peer_command(function, self.port, *arguments), **{**OUTSIDE, **env})
 
 
 def _words(plan: Plan, way: Direction, lane: int) -> list[str]:

@@ -1,0 +1,245 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Subscriptions and publishers of zenoh, with serialized messages."""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import itertools
+import time
+from collections import deque
+from collections.abc import Callable
+from threading import Event
+from typing import Any, NamedTuple
+
+import zenoh
+from zenoh import ext
+
+from rmw_manycore_bridge.zenoh.attachment import pack, unpack
+from rmw_manycore_bridge.zenoh.graph import Declared, Graph, say
+from rmw_manycore_py.native._transport import Qos
+
+_GID_BYTES = 16
+_SCOUT_DEPTH = 10
+_MAX_HOLD_UP_S, _STEP_S = 1.0, 0.05  # far longer than a turn of the bridge takes
+_HEARTBEAT_S = 0.5  # as rmw_zenoh: period in which the last number is repeated, if it has changed
+_OLD_PEER = (
+    "messages have the attachment of rmw_zenoh before 0.2.4: they are passed on, but it cannot "
+    "read those of the bridge"
+)
+_NO_NUMBERS = "messages have no attachment of rmw_zenoh: lost ones cannot be counted"
+
+
+class _Message(NamedTuple):
+    publisher: bytes
+    number: int
+    sent_ns: int
+    data: bytes
+
+
+class ZenohSubscription:
+    """Keeps arrived messages until they are taken.
+
+    When full it holds up the link if messages are reliable: their sender then waits, or drops them
+    and leaves a gap in the numbers. Otherwise, or after a while, it drops the oldest, which leaves
+    such a gap, too.
+    """
+
+    def __init__(
+        self, key: str, notify: Callable[[], None], left: Callable[[], object] = bool
+    ) -> None:
+        self._key, self._notify, self._left = key, notify, left
+        self._arrived: deque[_Message] = deque(maxlen=_SCOUT_DEPTH)
+        self._is_reliable = True  # until the QoS is known
+        self._room = Event()
+        self._said: set[str] = set()
+        # Of messages without numbers; a process that replaces this one goes on with higher ones.
+        self._numbers = itertools.count(time.time_ns())
+        self._message = _Message(b"", 0, 0, b"")
+        self._entity: Any = None
+        self._declared: Declared | None = None
+
+    def declare(self, session: zenoh.Session, key: str, qos: Qos) -> None:
+        """Begin to receive."""
+        if qos.durability == "volatile":
+            self._entity = session.declare_subscriber(key, self._note)
+            return
+        is_reliable = qos.reliability == "reliable"
+        self._entity = ext.declare_advanced_subscriber(
+            *(session, key, self._note),
+            history=ext.HistoryConfig(detect_late_publishers=True, max_samples=qos.depth),
+            recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True)
+            if is_reliable
+            else None,
+            subscriber_detection=True,
+        )
+
+    def keep(self, qos: Qos) -> None:
+        """Keep as many messages as the QoS says."""
+        self._arrived = deque(self._arrived, maxlen=qos.depth)
+        self._is_reliable = qos.reliability == "reliable"
+
+    def appear(self, declared: Declared, notify: Callable[[], None]) -> None:
+        """Take over the token in the graph, and notify of messages as a route wants it."""
+        self._declared, self._notify = declared, notify
+
+    @property
+    def is_in_graph(self) -> bool:
+        """Whether it has a token: a route takes its messages."""
+        return self._declared is not None
+
+    def _note(self, sample: zenoh.Sample) -> None:
+        """Keep a message, in a thread of zenoh."""
+        if sample.kind != zenoh.SampleKind.PUT:
+            return
+        if str(sample.key_expr) != self._key:
+            self._say_once(f"messages of another type are dropped: {sample.key_expr}")
+            return
+        message = self._message_of(sample)
+        if self._is_reliable:
+            self._wait_for_room()
+        self._arrived.append(message)
+        self._notify()
+
+    def _wait_for_room(self) -> None:
+        end_s = time.monotonic() + _MAX_HOLD_UP_S
+        while len(self._arrived) == self._arrived.maxlen and time.monotonic() < end_s:
+            self._room.clear()
+            if len(self._arrived) == self._arrived.maxlen:
+                self._room.wait(_STEP_S)
+
+    def _message_of(self, sample: zenoh.Sample) -> _Message:
+        data, attached = sample.payload.to_bytes(), sample.attachment
+        found = unpack(attached.to_bytes()) if attached is not None else None
+        if found is None:
+            self._say_once(_NO_NUMBERS)
+            key = hashlib.blake2s(str(sample.key_expr).encode(), digest_size=_GID_BYTES)
+            return _Message(key.digest(), next(self._numbers), time.time_ns(), data)
+        if found.is_old:
+            self._say_once(_OLD_PEER)
+        return _Message(found.gid, found.number, found.sent_ns, data)
+
+    def _say_once(self, text: str) -> None:
+        if text not in self._said:
+            self._said.add(text)
+            say(f"{self._key.split('/', 1)[1].rsplit('/', 2)[0]}: {text}")
+
+    def has_data(self) -> bool:
+        """Return whether a message waits."""
+        return bool(self._arrived)
+
+    def take(self) -> bool:
+        """Take the next message."""
+        if not self._arrived:
+            return False
+        self._message = self._arrived.popleft()
+        self._room.set()
+        return True
+
+    @property
+    def publisher(self) -> bytes:
+        """Gid of the publisher."""
+        return self._message.publisher
+
+    @property
+    def number(self) -> int:
+        """Sequence number."""
+        return self._message.number
+
+    @property
+    def sent_ns(self) -> int:
+        """Source timestamp."""
+        return self._message.sent_ns
+
+    @property
+    def address(self) -> int:
+        """Address of the message."""
+        return ctypes.cast(ctypes.c_char_p(self._message.data), ctypes.c_void_p).value or 0
+
+    @property
+    def size(self) -> int:
+        """Size of the message."""
+        return len(self._message.data)
+
+    def matched(self) -> int:
+        """Return 0: zenoh does not say how many publishers know of it."""
+        return 0
+
+    def close(self) -> None:
+        """Destroy it."""
+        if self._declared is not None:
+            self._declared.withdraw()
+        self._is_reliable = False
+        self._arrived.clear()
+        self._room.set()
+        self._entity.undeclare()
+        self._left()
+
+
+class ZenohPublisher:
+    """Publisher that waits for room on a slow link; what it misses meanwhile, the source counts."""
+
+    def __init__(self, graph: Graph, declared: Declared, changed: Callable[[], None]) -> None:
+        self._graph, self._declared, self._changed = graph, declared, changed
+        self.gid = declared.token.gid
+        self._numbers = itertools.count(1)
+        self._entity: Any = None
+        self._listener: Any = None
+
+    def declare(self, session: zenoh.Session, key: str, qos: Qos) -> None:
+        """Begin to publish."""
+        is_reliable = qos.reliability == "reliable"
+        # DROP would lose messages that are counted nowhere; that is left to the subscription that
+        # they come from, where a publisher is never held up.
+        link: dict[str, Any] = {
+            "congestion_control": zenoh.CongestionControl.BLOCK,
+            "reliability": zenoh.Reliability.RELIABLE
+            if is_reliable
+            else zenoh.Reliability.BEST_EFFORT,
+        }
+        if qos.durability == "volatile":
+            self._entity = session.declare_publisher(key, **link)
+            self._listener = self._entity.declare_matching_listener(lambda _: self._changed())
+            return
+        self._entity = ext.declare_advanced_publisher(
+            *(session, key),
+            **link,
+            cache=ext.CacheConfig(max_samples=qos.depth),
+            sample_miss_detection=ext.MissDetectionConfig(
+                heartbeat=None, sporadic_heartbeat=_HEARTBEAT_S
+            )
+            if is_reliable
+            else None,
+            publisher_detection=True,
+        )
+
+    def publish(self, address: int, size: int, sent_ns: int) -> None:
+        """Publish with the source timestamp of the platform's publisher."""
+        attachment = pack(next(self._numbers), sent_ns, self.gid)
+        self._entity.put(ctypes.string_at(address, size), attachment=attachment)
+
+    def has_listeners(self) -> bool:
+        """Return whether others subscribe, with a token in the graph or without any."""
+        name = self._declared.token.name
+        if self._fitting():
+            return True
+        is_matched = self._listener is not None and self._entity.matching_status.matching
+        return is_matched and not self._graph.has_any("MS", name)
+
+    def matched(self) -> int:
+        """Return the number of subscriptions in the graph."""
+        return self._fitting()
+
+    def _fitting(self) -> int:
+        token = self._declared.token
+        found = self._graph.endpoints("MS", token.name)
+        return sum((t.type, t.type_hash) == (token.type, token.type_hash) for t in found)
+
+    def is_acknowledged(self) -> bool:
+        """Return True: zenoh has handed to the link what `publish` has returned from."""
+        return True
+
+    def close(self) -> None:
+        """Destroy it."""
+        self._declared.withdraw()
+        self._entity.undeclare()
