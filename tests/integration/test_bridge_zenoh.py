@@ -233,7 +233,7 @@ def test_a_peer_that_does_not_read_costs_counted_messages(zenoh) -> None:
     assert speaker.is_running()
 
 
-def test_a_gateway_between_dds_and_rmw_zenoh(zenoh, bridge) -> None:
+def test_a_gateway_between_dds_and_rmw_zenoh(zenoh, bridge, manycore) -> None:
     """Both bridges of one platform: nodes of either outside hear those of the other."""
     bridge.run(bridge.route("inward", "/from_dds"), bridge.route("outward", "/from_zenoh"))
     zenoh.run(zenoh.route("outward", "/from_dds"), zenoh.route("inward", "/from_zenoh"))
@@ -244,6 +244,7 @@ def test_a_gateway_between_dds_and_rmw_zenoh(zenoh, bridge) -> None:
     on_dds.wait_for("^heard number")
     engines = {row["engine"] for row in zenoh.rows()}
     assert engines == {"fastdds", "zenoh"}
+    assert f"zenoh {zenoh.domain}" in manycore("bridge", "status")
 
 
 MAPFILE = """

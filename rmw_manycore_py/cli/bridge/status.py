@@ -13,6 +13,7 @@ from rmw_manycore_py.cli.common.options import examples, json_option, platform_o
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table, size_text
 from rmw_manycore_py.cli.common.view import open_platform
 from rmw_manycore_py.platform.topology import host_cpu_text
+from rmw_manycore_py.routes.outside import OutsideSettings
 
 _ARROWS = {"inward": "<-", "outward": "->"}
 
@@ -42,7 +43,7 @@ def _show(rows: list[dict[str, Any]]) -> None:
         state = row["state"] if row["alive"] else "process is gone"
         drops = ", ".join(f"{row[name]} {name}" for name in DROPS if row[name])
         table.add_row(
-            *(row["inside"], _ARROWS[row["direction"]], row["outside"], str(row["domain"])),
+            *(row["inside"], _ARROWS[row["direction"]], row["outside"], _domain(row)),
             *(str(row["lane"]), host_cpu_text(row["host_cpu"]), f"{row['load']:.1%}", state),
             *(str(row["messages"]), size_text(row["bytes"])),
             *(_time_text(row["latency_mean_ns"]), _time_text(row["latency_max_ns"])),
@@ -50,6 +51,12 @@ def _show(rows: list[dict[str, Any]]) -> None:
         )
     print_table(table)
     echo(_datagrams_text(rows))
+
+
+def _domain(row: dict[str, Any]) -> str:
+    """Return the domain, with the engine unless it is the default."""
+    is_default = row["engine"] == OutsideSettings().engine
+    return f"{row['domain']}" if is_default else f"{row['engine']} {row['domain']}"
 
 
 def _datagrams_text(rows: list[dict[str, Any]]) -> str:
