@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from rmw_manycore_py.cli.common.duration import duration_option
+from rmw_manycore_py.cli.common.finite_range import FiniteRange
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples, json_option, number_option
 from rmw_manycore_py.cli.common.output_file import OutputFile
@@ -64,7 +65,7 @@ from rmw_manycore_py.trace.files import SUFFIXES, save
 @click.option(
     "--deadline",
     "deadline_ms",
-    type=click.FloatRange(min=0, min_open=True),
+    type=FiniteRange(min=0, min_open=True),
     metavar="MS",
     help="Count messages that take longer through a chain.",
 )

@@ -11,6 +11,7 @@ from typing import Any
 
 import click
 
+from rmw_manycore_py.cli.common.finite_range import FiniteRange
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.platform import occupied_cores
 from rmw_manycore_py.launch.run import Mode, Run
@@ -61,7 +62,7 @@ def virtual_options(command: Callable[..., Any]) -> Callable[..., Any]:
     )
     factor = click.option(
         "--factor",
-        type=click.FloatRange(min=0, min_open=True),
+        type=FiniteRange(min=0, min_open=True),
         metavar="F",
         help="In virtual time, callbacks take F times their CPU time; 1 by default.",
     )
