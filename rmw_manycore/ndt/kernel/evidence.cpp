@@ -167,10 +167,10 @@ void point_evidence(
   PointEvidence * evidence) {
   std::vector<float> scores(count);
   point_scores(map, outlier_ratio, pose, xyz_m, count, scores.data());
-  const Pose4x4 T = to_matrix(pose);
+  const Pose4x4 sensor_in_map = to_matrix(pose);
   Vector3 from_m;
   for (size_t i = 0; i < 3; ++i) {
-    from_m[i] = T[4 * i + 3] - map.header->origin_m[i];
+    from_m[i] = sensor_in_map[4 * i + 3] - map.header->origin_m[i];
   }
   Columns columns(map);
   for (size_t point = 0; point < count; ++point) {
@@ -178,7 +178,7 @@ void point_evidence(
     Vector3 place_m = from_m;
     for (size_t i = 0; i < 3; ++i) {
       for (size_t j = 0; j < 3; ++j) {
-        place_m[i] += T[4 * i + j] * static_cast<double>(p[j]);
+        place_m[i] += sensor_in_map[4 * i + j] * static_cast<double>(p[j]);
       }
     }
     if (!is_finite(place_m)) {
