@@ -17,8 +17,8 @@ public:
   explicit Loans(size_t message_bytes) : message_bytes_(message_bytes) {}
 
   bool lends() const noexcept { return message_bytes_ != 0; }
-  /// Returns a message, aligned for any plain type. As in rmw_fastrtps_cpp, it is not initialized: a
-  /// take overwrites all of it, and so does a publisher.
+  /// Returns a message, aligned for any plain type. As in rmw_fastrtps_cpp, it is not initialized:
+  /// a take overwrites all of it, and so does a publisher.
   void * lend();
   bool is_lent(const void * message) const;
   /// False if the message is not on loan.
