@@ -197,10 +197,20 @@ class Session:
         """Start a native program as a party, on its CPU and in its cluster."""
         return self.start(native_command(program, **arguments), party)
 
-    def python(self, module: str, party: int, *arguments: object, by_hand: bool = False) -> Process:
-        """Start an rclpy program as a party; `by_hand` leaves the library path unset."""
+    def python(
+        self,
+        module: str,
+        party: int,
+        *arguments: object,
+        by_hand: bool = False,
+        cpus: Sequence[int] | None = None,
+    ) -> Process:
+        """Start an rclpy program as a party; `by_hand` leaves the library path unset.
+
+        :param cpus: overrides the party's CPU.
+        """
         command = own_program(f"{NODES}.{module}", *map(str, arguments))
-        return self.start(command, party, with_library_path=not by_hand)
+        return self.start(command, party, with_library_path=not by_hand, cpus=cpus)
 
     def module(self, name: str, party: int, *arguments: object) -> Process:
         """Start a module of ours as a party."""
