@@ -23,7 +23,7 @@ from rmw_manycore_py.launch.ros2_daemon import CURE, end_lone_daemons
 from rmw_manycore_py.launch.runner import Report, Runner
 from rmw_manycore_py.launch.runs.directory import OwnRun, new_run
 from rmw_manycore_py.launch.runs.private import write_private
-from rmw_manycore_py.launch.timekeeper import VirtualTime, check_virtual, timekeeper
+from rmw_manycore_py.launch.timekeeper import VirtualTime, closed_notices, timekeeper
 from rmw_manycore_py.launch.traced import traced
 from rmw_manycore_py.mapfile.placing.placement import PARAMETERS, Placement
 from rmw_manycore_py.platform.topology import RECEIVE_THREAD_CORE
@@ -49,11 +49,9 @@ class Run:
     def __init__(self, placement: Placement, mode: Mode) -> None:
         self._placement = placement
         self._mode = mode
-        self._bridge = bridge_programs(placement)
+        self._bridge = [] if mode.virtual else bridge_programs(placement)
         self._helpers = helper_programs(placement)
         _check_scheduling(placement)
-        if mode.virtual is not None:
-            check_virtual(placement, joins=mode.joins)
 
     @property
     def program_names(self) -> list[str]:
@@ -92,7 +90,8 @@ class Run:
         nodes = [NodeProgram.of(node, parameters) for node in placement.nodes]
         programs = [*self._bridge, *nodes, *self._helpers]
         with closing(Runner(programs, report)) as runner, reports.kept(runner, self.program_names):
-            for text in placement.notices:
+            closed = closed_notices(placement) if self._mode.virtual else ()
+            for text in (*placement.notices, *closed):
                 report(Notice(text))
             with self._platform(report), self._traced(trace, report), self._clock(runner):
                 report(_describe(placement, self._bridge))

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.process.parent_death import dies_with_this_process
 
@@ -117,15 +117,8 @@ def timekeeper(platform: str, mode: VirtualTime) -> Iterator[Timekeeper]:
             process.kill()
 
 
-def check_virtual(placement: Placement, *, joins: bool) -> None:
-    """Check that a placement can run in virtual time.
-
-    :raises ManycoreError: if processes outside of the run would act on it in wall time.
-    """
-    if placement.bridge is not None:
-        text = "the bridge lives in wall time: remove topic_in, topic_to and the like"
-    elif joins:
-        text = "--join: the platform that is running lives in wall time"
-    else:
-        return
-    raise ManycoreError(f"virtual time: {text}", EXIT_BAD_INPUT)
+def closed_notices(placement: Placement) -> tuple[str, ...]:
+    """Return what the user should know of a placement that runs in virtual time."""
+    if placement.bridge is None:
+        return ()
+    return ("virtual time: the bridge, which lives in wall time, stays closed",)

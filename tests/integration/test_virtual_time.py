@@ -137,8 +137,11 @@ def test_computing_takes_time(mapfile, log_of) -> None:
     assert all(time_ns % (NS_PER_S // 10) != 0 for time_ns in times_ns)
 
 
-def test_a_bridge_is_refused(manycore) -> None:
-    text = manycore("run", "talker_listener", "--virtual", status=2)
-    assert "virtual time: the bridge lives in wall time" in text
+def test_the_bridge_is_closed_and_mistakes_are_refused(manycore) -> None:
+    text = manycore("run", "talker_listener", "--virtual", "--duration", "2")
+    assert "virtual time: the bridge, which lives in wall time, stays closed" in text
+    assert "I heard: 'Hello World: 1'" in text
+    text = manycore("run", "talker_listener", "--virtual", "--join", status=2)
+    assert "--join: the platform that is running lives in wall time" in text
     text = manycore("run", "talker_listener", "--instant", "--factor", "2", status=2)
     assert "--instant and --factor exclude each other" in text

@@ -23,7 +23,7 @@ constexpr int64_t look_after_ns = 1'000'000;
 constexpr int64_t idle_ns = 5'000'000;
 constexpr int64_t short_pause_ns = 50'000;
 /// Wall time after which whatever holds time still is named.
-constexpr int64_t report_after_ns = ns_per_s;
+constexpr int64_t report_after_ns = 5 * ns_per_s;
 /// How long the rows of a dead process may stay in the registry.
 constexpr int64_t reaping_ns = 2 * ns_per_s;
 
@@ -102,6 +102,7 @@ void Timekeeper::obey(const Command & command) {
       Program & program = programs_[command.rank];
       program.name = command.name;
       program.pid = command.pid;
+      program.started_ns = monotonic_ns();
       program.pidfd = open_pidfd(command.pid);
       program.threads.emplace(command.pid);
       program.state = Program::State::starting;
@@ -135,6 +136,9 @@ void Timekeeper::await_join(uint32_t rank, Program & program) {
   } else if (has_ended(program.pidfd)) {
     note_end(program);
   } else {
+    if (monotonic_ns() - program.started_ns > 2 * report_after_ns) {
+      report_still(program.name + " has not called rmw_init: is it a ROS 2 program?");
+    }
     pause(seen, idle_ns);
   }
 }

@@ -39,6 +39,7 @@ private:
     std::string name;
     State state = State::starting;
     pid_t pid = 0;
+    int64_t started_ns = 0;  ///< CLOCK_MONOTONIC
     FileDescriptor pidfd;
     std::optional<ProcessThreads> threads;
   };

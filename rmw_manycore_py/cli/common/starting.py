@@ -43,10 +43,13 @@ def prepared_run(
 ) -> tuple[Run, Placement]:
     """Return the run of a mapfile or of some of its nodes, without starting it."""
     loaded = _only(load_mapfile(mapfile), nodes)
+    if loaded.sections.clock == "virtual" and virtual is None:
+        virtual = VirtualTime(factor=1.0)
+    if virtual is not None and joins:
+        text = "--join: the platform that is running lives in wall time, not in virtual time"
+        raise ManycoreError(text, EXIT_BAD_INPUT)
     occupied = occupied_cores(loaded.platform_name) if joins else ()
     placement = resolve(loaded, occupied)
-    if placement.is_virtual and virtual is None:
-        virtual = VirtualTime(factor=1.0)
     return Run(placement, Mode(mapfile, joins, detached, virtual)), placement
 
 

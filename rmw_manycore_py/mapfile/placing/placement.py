@@ -252,7 +252,6 @@ class Placement:
     :param host_cpus: host CPU of each core in use, those of receive threads and workers included.
     :param bridge: what crosses to the outside; None where nothing does.
     :param notices: what the user should know, although nothing is wrong.
-    :param is_virtual: whether the nodes live in virtual time.
     """
 
     name: str
@@ -263,4 +262,3 @@ class Placement:
     host_cpus: Mapping[Core, int]
     bridge: BridgePlacement | None
     notices: tuple[str, ...]
-    is_virtual: bool = False

@@ -115,5 +115,4 @@ def _placement(
             *overruled_prefixes(starts, nodes),
             *elsewhere(mapfile.platform_name, nodes),
         ),
-        is_virtual=mapfile.sections.clock == "virtual",
     )
