@@ -1,0 +1,98 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// ProcessThreads: what the kernel says of the threads of another process. Does not prove that a
+// wake-up between two looks is always seen: virtual_time.pml does.
+#include <doctest/doctest.h>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <functional>
+#include <future>
+#include <thread>
+
+#include "platform/process_threads.hpp"
+
+using namespace manycore;
+
+namespace {
+
+/// A child whose main thread and a second one each do something until they are killed.
+class Child {
+public:
+  Child(const std::function<void()> & first, const std::function<void()> & second) : pid_(fork()) {
+    if (pid_ == 0) {
+      std::thread other(second);
+      first();
+      other.join();
+      _exit(0);
+    }
+  }
+  ~Child() {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  Child(const Child &) = delete;
+  Child & operator=(const Child &) = delete;
+  pid_t pid() const { return pid_; }
+
+private:
+  const pid_t pid_;
+};
+
+void wait_for_another() {
+  std::promise<void> never;
+  never.get_future().wait();
+}
+void compute() {
+  for (volatile int i = 0; true; i = i + 1) {
+  }
+}
+void sleep_long() { usleep(1'000'000'000); }
+
+/// Looks until the threads have come so far.
+template<typename Predicate>
+ProcessThreads::Look look_until(pid_t pid, Predicate predicate) {
+  ProcessThreads threads(pid);
+  ProcessThreads::Look look = threads.look({}, {});
+  while (!predicate(look)) {
+    look = threads.look({}, {});
+  }
+  return look;
+}
+
+}  // namespace
+
+TEST_CASE("threads that wait for each other sleep") {
+  const Child child(wait_for_another, wait_for_another);
+  CHECK(look_until(child.pid(), [](const auto & look) { return look.asleep; }).tid == 0);
+}
+
+TEST_CASE(
+  "a thread that sleeps by the clock is awake, and named, unless it is known to be blocked") {
+  const Child child(wait_for_another, sleep_long);
+  const auto sleeps = [](const auto & look) { return look.doing == "sleeps by the wall clock"; };
+  const ProcessThreads::Look look = look_until(child.pid(), sleeps);
+  CHECK(!look.asleep);
+  CHECK(look.tid > child.pid());
+  ProcessThreads threads(child.pid());
+  CHECK(threads.look({look.tid}, {}).asleep);
+}
+
+TEST_CASE("a thread that computes is awake, though another one sleeps") {
+  const Child child(compute, wait_for_another);
+  ProcessThreads threads(child.pid());
+  for (int i = 0; i < 1000; ++i) {
+    REQUIRE(!threads.look({}, {}).asleep);
+  }
+}
+
+TEST_CASE("a process that has ended is at rest") {
+  const pid_t pid = fork();
+  if (pid == 0) {
+    _exit(0);
+  }
+  waitpid(pid, nullptr, 0);
+  CHECK(ProcessThreads(pid).look({}, {}).asleep);
+}
