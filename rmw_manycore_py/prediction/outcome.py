@@ -6,8 +6,11 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from rmw_manycore_py.prediction.chains import chain_times
 from rmw_manycore_py.prediction.prediction import (
+    Communication,
     CoreUse,
     LinkUse,
     Prediction,
@@ -32,6 +35,7 @@ def outcome_of(
         cores=tuple(_cores(simulation.processes, duration_s)),
         receive_threads=tuple(_receive_threads(simulation, duration_s)),
         smem_bytes=_smem_bytes(simulation),
+        communications=tuple(_communications(subscriptions_of(simulation))),
         links=tuple(_links(simulation, duration_s)),
         queues=tuple(_queues(subscriptions_of(simulation))),
         overwritten=_overwritten(simulation),
@@ -70,6 +74,14 @@ def _smem_bytes(simulation: Simulation) -> dict[int, int]:
         if publisher.ring_bytes is None:
             found[publisher.cluster] = found.get(publisher.cluster, 0) + publisher.peak_bytes
     return found
+
+
+def _communications(subscriptions: Sequence[Subscription]) -> Iterator[Communication]:
+    for one in subscriptions:
+        if one.taken:
+            times = [(taken.callback_ns - taken.message.published_ns) / 1e3 for taken in one.taken]
+            p50_us, p99_us = np.quantile(times, (0.5, 0.99)).tolist()
+            yield Communication(one.node, one.topic, len(times), p50_us, p99_us)
 
 
 def _links(simulation: Simulation, duration_s: float) -> Iterator[LinkUse]:

@@ -70,6 +70,17 @@ class QueueUse:
 
 
 @dataclass(frozen=True)
+class Communication:
+    """Times from the call of publish to the begin of a subscription's callback, in us."""
+
+    node: str
+    topic: str
+    count: int
+    p50_us: float
+    p99_us: float
+
+
+@dataclass(frozen=True)
 class LinkUse:
     """Traffic on a link between clusters; its share of the time that it was occupied."""
 
@@ -103,6 +114,7 @@ class Prediction:
     cores: tuple[CoreUse, ...]
     receive_threads: tuple[ReceiveThreadUse, ...]
     smem_bytes: Mapping[int, int]
+    communications: tuple[Communication, ...]
     links: tuple[LinkUse, ...]
     queues: tuple[QueueUse, ...]
     overwritten: Mapping[str, int]

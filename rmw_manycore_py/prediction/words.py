@@ -29,6 +29,7 @@ def as_data(one: Prediction, deadline_ms: float | None = None) -> dict[str, Any]
         "cores": [_core(core) for core in one.cores],
         "receive_threads": [asdict(thread) for thread in one.receive_threads],
         "smem_bytes": dict(one.smem_bytes),
+        "communications": [asdict(each) for each in one.communications],
         "links": [asdict(link) for link in one.links],
         "queues": [asdict(queue) for queue in one.queues],
         "overwritten": dict(one.overwritten),

@@ -13,6 +13,10 @@ from rmw_manycore_py.profile.model import Coverage
 from rmw_manycore_py.profile.seen import Address, CallbackSeen, PublisherSeen, Registration
 
 
+def _times() -> array[int]:
+    return array("q")
+
+
 @dataclass
 class _Running:
     """A callback that runs on a thread."""
@@ -32,6 +36,8 @@ class Executions:
         self._entities = entities
         self._current: dict[Address, tuple[Registration | None, CallbackSeen]] = {}
         self._running: dict[ThreadId, list[_Running]] = defaultdict(list)
+        self._published: dict[str, array[int]] = defaultdict(_times)  # by topic
+        self._ended_ns: dict[Address, int] = {}  # of the last callback, by pid and tid
         self._counts = dict.fromkeys(Coverage.model_fields, 0)
 
     @property
@@ -46,7 +52,11 @@ class Executions:
         if running:
             running[-1].encloses = True
         at = event.handle
-        running.append(_Running(at, self._callback((event.thread.pid, at)), event.time_ns))
+        callback = self._callback((event.thread.pid, at))
+        running.append(_Running(at, callback, event.time_ns))
+        published = self._published.get(callback.trigger.name)
+        if published and callback.trigger.kind == "subscription":
+            self._match(event, callback, published)
 
     def end(self, event: Event) -> None:
         """Handle the end of a callback. Those begun inside it have ended, too."""
@@ -61,6 +71,7 @@ class Executions:
             self._counts["enclosing"] += 1
             return
         pid, tid = event.thread
+        self._ended_ns[event.thread] = event.time_ns
         self.tids[pid].add(tid)
         one.callback.tids.add(tid)
         one.callback.begins_ns.append(one.begin_ns)
@@ -75,6 +86,7 @@ class Executions:
             self._counts["publications_of_unknown_publishers"] += 1
             return
         publisher.times_ns.append(event.time_ns)
+        self._published[publisher.topic].append(event.time_ns)
         running = self._running[event.thread]
         if not running:
             publisher.outside_callbacks += 1
@@ -85,6 +97,25 @@ class Executions:
         if offsets_ns is None:
             offsets_ns = cause.callback.offsets_ns[publisher] = array("q")
         offsets_ns.append(event.time_ns - cause.begin_ns)
+
+    def _match(self, event: Event, callback: CallbackSeen, published: array[int]) -> None:
+        """Note how long the message of a callback was under way.
+
+        It is the newest one if the thread was idle when that was published, else the next one that
+        the queue still holds.
+        """
+        newest = len(published) - 1
+        is_idle = self._ended_ns.get(event.thread, 0) <= published[newest]
+        if is_idle or not callback.queued_ns:
+            number = newest
+        else:
+            depth = callback.trigger.queue_depth or 1
+            number = min(max(callback.next_message, newest + 1 - depth), newest)
+        queued_ns = event.time_ns - published[number]
+        callback.next_message = number + 1
+        callback.queued_ns.append(queued_ns)
+        if is_idle:
+            callback.dispatch_ns.append(queued_ns)
 
     def _cause(self, publisher: PublisherSeen, running: list[_Running]) -> _Running:
         """Return the callback of the publisher's node; else, or of several, the innermost."""

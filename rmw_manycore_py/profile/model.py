@@ -107,6 +107,7 @@ class Callback(_Row):
     interval_ns: Distribution | None  # from begin to begin
     publishes: tuple[Output, ...]
     dispatch_ns: Distribution | None = None  # before its begin: the executor's work, and the take
+    queued_ns: Distribution | None = None  # from the call of publish to the begin
 
     @property
     def load_cpus(self) -> float:

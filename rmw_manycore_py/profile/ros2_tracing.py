@@ -156,6 +156,8 @@ def _callback(one: CallbackSeen, process: int, tids: list[int], span: _Span) -> 
             )
             for publisher, offsets_ns in one.offsets_ns.items()
         ),
+        dispatch_ns=distribution_of(one.dispatch_ns),
+        queued_ns=distribution_of(one.queued_ns),
     )
 
 

@@ -14,6 +14,7 @@ from rich.console import Console
 
 from rmw_manycore_py.bench.machine import machine_header
 from rmw_manycore_py.bench.predict.errors import MappingError, Order, error_of, order_of
+from rmw_manycore_py.bench.predict.halves import Queueing, queueing_of
 from rmw_manycore_py.bench.predict.reports import ReportedChain, reported_chains
 from rmw_manycore_py.bench.predict.runs import Compared, Plan, compared
 from rmw_manycore_py.cli.common.duration import duration_option
@@ -22,7 +23,9 @@ from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, pri
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.mapfile.installed import find_mapfile
 from rmw_manycore_py.prediction import require_simpy
+from rmw_manycore_py.profile.files import load
 
+_PARTS_S = 20.0  # simulated
 APPLICATIONS = ("autoware_reference", "image_pipeline")
 
 
@@ -32,6 +35,7 @@ APPLICATIONS = ("autoware_reference", "image_pipeline")
         "manycore bench predict -o build/predict",
         "manycore bench predict image_pipeline --mappings 4 --repetitions 2 -o build/predict",
         "manycore bench predict --report caret_report --mappings 0 -o build/predict",
+        "manycore bench predict --parts a.json b.json --mappings 0 -o build/predict",
     ),
 )
 @click.argument("mapfiles", nargs=-1, metavar="[MAPFILE]...")
@@ -43,6 +47,13 @@ APPLICATIONS = ("autoware_reference", "image_pipeline")
     "--report",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
     help="Also predict the chains of a CARET report, whose latencies it holds.",
+)
+@click.option(
+    "--parts",
+    nargs=2,
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    metavar="FIRST SECOND",
+    help="Also predict the second of two imported profiles from the first.",
 )
 @click.option(
     "-o",
@@ -59,6 +70,7 @@ def command(
     duration_s: float,
     seed: int,
     report: Path | None,
+    parts: tuple[Path, Path] | None,
     output: Path,
     as_json: bool,
 ) -> None:
@@ -79,6 +91,7 @@ def command(
             plan = Plan(mapfile, directory, mappings, repetitions, duration_s, seed)
             found[plan.name] = compared(plan, status.update)
         chains = reported_chains(report, seed) if report else []
+        queueing = queueing_of(*map(load, parts), _PARTS_S, seed) if parts else None
     rows = {name: _row(of) for name, of in found.items()}
     if as_json:
         print_json(
@@ -86,6 +99,7 @@ def command(
                 "machine": machine_header(),
                 "applications": rows,
                 "report": [asdict(one) for one in chains],
+                "parts": asdict(queueing) if queueing else None,
             }
         )
         return
@@ -93,6 +107,8 @@ def command(
         _show(name, of)
     if chains:
         _show_report(chains)
+    if queueing:
+        _show_parts(queueing)
 
 
 def _row(mappings: Sequence[Compared]) -> dict[str, Any]:
@@ -162,6 +178,14 @@ def _show_report(chains: Sequence[ReportedChain]) -> None:
         texts = (f"{one.measured_ms:.1f}", f"{one.predicted_ms:.1f}", f"{one.error:+.1%}")
         table.add_row(one.chain, *texts)
     print_table(table)
+
+
+def _show_parts(found: Queueing) -> None:
+    echo(
+        f"\nfrom publish to callback, {found.subscriptions} subscriptions of both parts "
+        f"({found.only_in_second} others): median error {_percent(found.error)}; "
+        f"repeating the first part {_percent(found.repeated)}"
+    )
 
 
 def _percent(value: float | None) -> str:

@@ -1,0 +1,63 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""One part of a run predicts another: from the call of publish to the begin of each callback."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from statistics import median
+
+from rmw_manycore_py.bench.predict.reports import UNSHARED
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.prediction import Sites, predict
+from rmw_manycore_py.profile.model import Profile
+
+MIN_MESSAGES = 50  # in the profile that is predicted
+# The profile's times before a callback have all of it: publish, transport, and waking.
+_TARGET = UNSHARED.changed(
+    dict.fromkeys(("wake_us", "wake_busy_us", "publish_us", "switch_us"), 0.0), "chosen"
+)
+
+
+@dataclass(frozen=True)
+class Queueing:
+    """Median errors over subscriptions that are in both profiles.
+
+    :ivar repeated: error of taking the first profile's median as it is.
+    """
+
+    subscriptions: int
+    only_in_second: int
+    error: float
+    repeated: float
+
+
+def queueing_of(first: Profile, second: Profile, duration_s: float, seed: int) -> Queueing:
+    """Predict the second profile from the first.
+
+    :raises ManycoreError: if they have no subscription with enough messages in common.
+    """
+    measured = _medians_us(second)
+    before = _medians_us(first, 1)
+    found = predict(Sites({}), first, _TARGET, seed=seed, duration_s=duration_s, chains=())
+    predicted = {(one.node, one.topic): one.p50_us for one in found.communications}
+    common = [key for key in measured if key in predicted and key in before]
+    if not common:
+        text = "the profiles have no subscription in common with times from publish to callback"
+        raise ManycoreError(text, EXIT_BAD_INPUT)
+    return Queueing(
+        len(common),
+        len(measured) - len(common),
+        median(abs(predicted[key] / measured[key] - 1) for key in common),
+        median(abs(before[key] / measured[key] - 1) for key in common),
+    )
+
+
+def _medians_us(profile: Profile, min_messages: int = MIN_MESSAGES) -> dict[tuple[str, str], float]:
+    middle = profile.quantile_shares.index(0.5)
+    return {
+        (profile.nodes[one.node].name, one.trigger): one.queued_ns.quantiles[middle] / 1e3
+        for one in profile.callbacks
+        if one.queued_ns is not None
+        and one.node is not None
+        and (one.queued_ns.count or 0) >= min_messages
+    }
