@@ -17,8 +17,9 @@ import click
 
 from rmw_manycore_py.cli.common.completion import complete_nodes_of_runs
 from rmw_manycore_py.cli.common.detach_keys import DetachKeys, parse_keys
+from rmw_manycore_py.cli.common.node_watch import unapplied
 from rmw_manycore_py.cli.common.options import examples, platform_option
-from rmw_manycore_py.cli.common.printing import echo
+from rmw_manycore_py.cli.common.printing import echo, print_notices
 from rmw_manycore_py.cli.common.runs import living_runs, nodes_by_run
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, EXIT_FAILURE, ManycoreError
 from rmw_manycore_py.launch.events import Ended, Started, event_of
@@ -131,6 +132,7 @@ class _Session:
 
 
 def _restart(run: RunDirectory, name: str) -> None:
+    print_notices(unapplied(run))
     with Client(run, "restart", nodes=[name], terminal=True) as client:
         for message in client.messages():
             event = event_of(message)

@@ -57,9 +57,10 @@ def command(
     if as_list:
         _list()
         return
-    placement = resolve(load_mapfile(mapfile))
+    loaded = load_mapfile(mapfile)
+    placement = resolve(loaded)
     echo(f"{mapfile}: {description(mapfile)}\n")
-    run = Run(placement, Mode(mapfile))
+    run = Run(placement, Mode(loaded))
     exit_status = run.run(RunPrinter(run.program_names).report, duration_s)
     if exit_status == 0:
         _explain(mapfile, placement)

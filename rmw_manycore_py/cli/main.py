@@ -15,6 +15,7 @@ VERBS = {
     "ps": "rmw_manycore_py.cli.ps:command",
     "logs": "rmw_manycore_py.cli.logs:command",
     "restart": "rmw_manycore_py.cli.restart:command",
+    "move": "rmw_manycore_py.cli.move:command",
     "attach": "rmw_manycore_py.cli.attach:command",
     "stop": "rmw_manycore_py.cli.stop:command",
     "demo": "rmw_manycore_py.cli.demo:command",
@@ -46,7 +47,8 @@ VERBS = {
 }
 SECTIONS = {
     "Run": (
-        "run", "up", "ps", "logs", "restart", "attach", "stop", "demo", "map", "create", "bridge",
+        "run", "up", "ps", "logs", "restart", "move", "attach", "stop", "demo", "map", "create",
+        "bridge",
     ),
     "Look": ("status", "top", "view", "trace"),
     "Plan": ("profile", "simulate"),

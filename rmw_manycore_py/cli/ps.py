@@ -8,6 +8,7 @@ import click
 from rmw_manycore_py.cli.common.options import any_platform_option, examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.cli.common.rows import Row
+from rmw_manycore_py.cli.common.runs import end_of, start_again
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.runs.client import Client
 from rmw_manycore_py.launch.runs.directory import RunDirectory, all_runs, runs_of
@@ -19,20 +20,24 @@ from rmw_manycore_py.launch.runs.directory import RunDirectory, all_runs, runs_o
 def command(platform: str | None, as_json: bool) -> None:
     """Show the nodes of this user's runs.
 
-    Nodes that have ended are shown as well. `manycore status` also shows nodes started by hand,
-    by platform.
+    Nodes that have ended are shown as well, and runs that were killed until they are started
+    again or stopped. `manycore status` also shows nodes started by hand, by platform.
     """
     runs = runs_of(platform) if platform else all_runs()
-    rows = [_row(run) for run in runs if run.is_alive]
+    shown = [(run, _row(run)) for run in runs if run.is_alive or run.killed_after]
     if as_json:
-        print_json(rows)
+        print_json([row for _, row in shown])
         return
-    if not rows:
+    if not shown:
         echo("no run of `manycore run` or `manycore up`")
-    for number, row in enumerate(rows):
+    for number, (run, row) in enumerate(shown):
         if number:
             echo()
-        _show(row)
+        if row["killed_after"] is None:
+            _show(row)
+        else:
+            stop = f"`manycore stop --platform {run.platform}` forgets it"
+            echo(f"platform {run.platform}: {end_of(run)}; {start_again(run)}, {stop}")
 
 
 def _row(run: RunDirectory) -> Row:
@@ -45,7 +50,11 @@ def _row(run: RunDirectory) -> Row:
         "detached": info.get("detached"),
         "started": info.get("started"),
         "logs": run.logs,
+        "killed_after": None,
     }
+    if killed := run.killed_after:
+        row["killed_after"] = killed.isoformat(timespec="seconds")
+        return {**row, "nodes": []}
     try:
         with Client(run, "state") as client:
             return {**row, "nodes": client.answer["nodes"]}

@@ -12,7 +12,7 @@ from rmw_manycore_py.cli.common.completion import complete_nodes_of_runs
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
-from rmw_manycore_py.cli.common.runs import living_runs, no_run, nodes_by_run
+from rmw_manycore_py.cli.common.runs import end_of, living_runs, no_run, nodes_by_run
 from rmw_manycore_py.errors import EXIT_FAILURE, ManycoreError
 from rmw_manycore_py.launch.events import Finished, event_of
 from rmw_manycore_py.launch.platform import remaining_users
@@ -41,7 +41,12 @@ def command(nodes: tuple[str, ...], now: bool, platform: str) -> None:
         for run, names in nodes_by_run(living_runs(platform), nodes):
             _stop_nodes(run, names)
         return
-    runs = [run for run in runs_of(platform) if run.is_alive]
+    known = runs_of(platform)
+    for run in known:
+        if run.killed_after:
+            echo(end_of(run))
+            run.forget()
+    runs = [run for run in known if run.is_alive]
     if not runs:
         _explain(platform)
         return

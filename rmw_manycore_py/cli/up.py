@@ -9,10 +9,15 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
+from rmw_manycore_py.cli.common.node_watch import NodeWatch, checked_answer
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.printing import echo, print_notices
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.cli.common.starting import prepared_run, starting_options
 from rmw_manycore_py.launch.detached import run_in_background
+from rmw_manycore_py.launch.runs.client import Client
+from rmw_manycore_py.launch.runs.directory import RunDirectory, runs_of
+from rmw_manycore_py.mapfile import load_mapfile
 from rmw_manycore_py.ros.domain import default_platform
 
 
@@ -32,8 +37,14 @@ def command(mapfile: Path, detached: bool, joins: bool, nodes: tuple[str, ...]) 
     """Start the nodes of MAPFILE; -d: in the background.
 
     Without -d, same as `manycore run`. With -d, returns once all nodes are started; Ctrl-C before
-    that stops them again. Continue with ps, logs, restart, attach and stop.
+    that stops them again. Continue with ps, logs, restart, move, attach and stop.
+
+    If MAPFILE runs already, -d applies what has changed in it: nodes that are new, or have another
+    place or definition, are started there, and nodes that are gone are stopped. Others run on.
+    Shape, topics and bridge of a running platform cannot change: then nothing is applied.
     """
+    if detached and not joins and not nodes and (running := _run_of(mapfile)):
+        sys.exit(_apply(running))
     run, placement = prepared_run(mapfile, joins, nodes, detached)
     printer = RunPrinter(run.program_names)
     if not detached:
@@ -43,3 +54,24 @@ def command(mapfile: Path, detached: bool, joins: bool, nodes: tuple[str, ...]) 
         option = "" if placement.name == default_platform() else f" --platform {placement.name}"
         printer.say(f"in the background: manycore logs -f{option}; manycore stop{option}")
     sys.exit(status)
+
+
+def _run_of(mapfile: Path) -> RunDirectory | None:
+    """Return the run of a mapfile on its platform, if there is one."""
+    runs = runs_of(load_mapfile(mapfile).platform_name)
+    path = str(mapfile.resolve())
+    return next((run for run in runs if run.is_alive and run.info.get("mapfile") == path), None)
+
+
+def _apply(run: RunDirectory) -> int:
+    """Apply what has changed in the mapfile of a run; return the exit status."""
+    with Client(run, "apply") as client:
+        answer = checked_answer(client)
+        print_notices(
+            f"{name} is unchanged, and has ended: `manycore restart {name}` starts it"
+            for name in answer["stay_ended"]
+        )
+        if not answer["starts"] and not answer["ends"]:
+            echo(f"{run.info['mapfile']} runs already on platform {run.platform}, unchanged")
+            return 0
+        return NodeWatch(run, answer["starts"], answer["ends"]).follow(client)

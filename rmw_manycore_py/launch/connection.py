@@ -43,6 +43,11 @@ class Connection:
         runner.watch(client, self._serve)
 
     @property
+    def is_finished(self) -> bool:
+        """Return whether the client gets no more messages."""
+        return self._is_finished
+
+    @property
     def is_idle(self) -> bool:
         """Return whether everything has been sent."""
         return not self._queue

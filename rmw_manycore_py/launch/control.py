@@ -15,12 +15,15 @@ from dataclasses import asdict
 from typing import Any
 
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.launch.applying import Applier
 from rmw_manycore_py.launch.connection import Connection
 from rmw_manycore_py.launch.events import Ended, Event, Output, Restarting
 from rmw_manycore_py.launch.processes.node_process import NodeProcess
 from rmw_manycore_py.launch.requests import (
+    Apply,
     Attach,
     Follow,
+    Move,
     Restart,
     State,
     Stop,
@@ -45,9 +48,10 @@ _GOODBYE_S = 1.0
 class Control:
     """Serves the clients of a run from the runner's event loop; never blocks."""
 
-    def __init__(self, listener: socket.socket, runner: Runner) -> None:
+    def __init__(self, listener: socket.socket, runner: Runner, applier: Applier) -> None:
         self._listener = listener
         self._runner = runner
+        self._applier = applier
         self._connections: list[Connection] = []
         self._spare = socket.socket()  # only a descriptor, for `_turn_away`
         runner.watch(listener, self._accept)
@@ -73,6 +77,7 @@ class Control:
 
     def close(self) -> None:
         """Disconnect all clients."""
+        self._applier.close()
         self._runner.unwatch(self._listener)
         deadline_s = time.monotonic() + _GOODBYE_S
         for connection in tuple(self._connections):
@@ -121,6 +126,8 @@ class Control:
                 self._stop(connection, request)
             case Restart():
                 self._restart(connection, request)
+            case Apply() | Move():
+                self._applier.begin(connection, request)
             case Follow():
                 connection.send({})
                 connection.follows_logs = True

@@ -26,8 +26,9 @@ class LogKeeper:
         changed: Callable[[], None],
     ) -> None:
         names = (SUPERVISOR, *nodes)
-        max_bytes = share_of(len(names))
-        self._files = {name: LogFile(directory, name, max_bytes) for name in names}
+        self._directory = directory
+        self._max_bytes = share_of(len(names))
+        self._files: dict[str, LogFile] = {}
         self._warn = warn
         self._changed = changed
 
@@ -47,6 +48,8 @@ class LogKeeper:
             file.close()
 
     def _write(self, name: str, line: str) -> None:
+        if name not in self._files:
+            self._files[name] = LogFile(self._directory, name, self._max_bytes)
         if reason := self._files[name].write(line):
             self._warn(Notice(f"cannot write the log of {name}: {reason}"))
         self._changed()

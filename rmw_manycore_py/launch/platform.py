@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
@@ -79,17 +80,25 @@ def remaining_users(name: str) -> list[str]:
     return users
 
 
-def occupied_cores(name: str) -> set[Core]:
+def occupied_cores(name: str, own_groups: Collection[int] = ()) -> set[Core]:
     """Return the occupied cores of a running platform.
 
+    :param own_groups: process groups whose cores are not counted.
     :raises ManycoreError: if there is no such platform to join.
     """
     with _opened(name) as platform:
         return {
             Core(process.cluster, process.core)
             for process in platform.processes()
-            if process.alive and process.core is not None
+            if process.alive and process.core is not None and _group(process.pid) not in own_groups
         }
+
+
+def _group(pid: int) -> int | None:
+    try:
+        return os.getpgid(pid)
+    except ProcessLookupError:  # it has ended, or is not visible here
+        return None
 
 
 def check_joined(placement: Placement) -> None:

@@ -62,6 +62,22 @@ class Restart(_Strict):
     terminal: bool = False
 
 
+class Apply(_Strict):
+    """Read the mapfile again and apply what changed, or with `check` report it."""
+
+    do: Literal["apply"]
+    check: bool = False
+
+
+class Move(_Strict):
+    """Move a node, without `core` to the first free one."""
+
+    do: Literal["move"]
+    node: str
+    cluster: int
+    core: int | None = None
+
+
 class Follow(_Strict):
     """Report new lines in the logs."""
 
@@ -91,7 +107,7 @@ class Typing(_Strict):
             raise _refused(error) from error
 
 
-Request = State | Stop | Restart | Follow | Attach
+Request = State | Stop | Restart | Apply | Move | Follow | Attach
 _REQUESTS: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Field(discriminator="do")])
 
 

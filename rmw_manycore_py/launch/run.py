@@ -5,29 +5,31 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, ExitStack, closing, contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.launch.applying import Applier
 from rmw_manycore_py.launch.bridge import bridge_programs
 from rmw_manycore_py.launch.control import Control
 from rmw_manycore_py.launch.events import Event, Finished, Notice, PlacedCore, Platform
 from rmw_manycore_py.launch.helpers import helper_programs
 from rmw_manycore_py.launch.log_keeper import LogKeeper
+from rmw_manycore_py.launch.placing_again import Mapped, Task
 from rmw_manycore_py.launch.platform import check_joined, configured_platform, remaining_users
 from rmw_manycore_py.launch.processes.program import NodeProgram
+from rmw_manycore_py.launch.programs import check_scheduling, programs_of, write_parameters
 from rmw_manycore_py.launch.ros2_daemon import CURE, end_lone_daemons
 from rmw_manycore_py.launch.runner import Report, Runner
 from rmw_manycore_py.launch.runs.directory import OwnRun, new_run
-from rmw_manycore_py.launch.runs.private import write_private
 from rmw_manycore_py.launch.timekeeper import VirtualTime, closed_notices, timekeeper
 from rmw_manycore_py.launch.traced import traced
+from rmw_manycore_py.mapfile import Mapfile
 from rmw_manycore_py.mapfile.placing.placement import PARAMETERS, Placement
 from rmw_manycore_py.platform.topology import RECEIVE_THREAD_CORE
-from rmw_manycore_py.process.scheduling import refusal
 from rmw_manycore_py.process.signals import SignalInbox, signal_inbox
 
 RECEIVE_THREAD = "(receive thread)"  # node names have no spaces
@@ -35,12 +37,17 @@ RECEIVE_THREAD = "(receive thread)"  # node names have no spaces
 
 @dataclass(frozen=True)
 class Mode:
-    """Whether a run creates or joins its platform, is in the background, and what its time is."""
+    """What a run was started from, and how.
 
-    mapfile: Path
+    :param only: whether `mapfile` has only some of the file's nodes.
+    :param virtual: how long callbacks take in virtual time; None: the time is the wall clock's.
+    """
+
+    mapfile: Mapfile
     joins: bool = False
     detached: bool = False
-    virtual: VirtualTime | None = None  # None: the wall clock
+    only: bool = False
+    virtual: VirtualTime | None = None
 
 
 class Run:
@@ -51,7 +58,7 @@ class Run:
         self._mode = mode
         self._bridge = [] if mode.virtual else bridge_programs(placement)
         self._helpers = helper_programs(placement)
-        _check_scheduling(placement)
+        check_scheduling(placement)
 
     @property
     def program_names(self) -> list[str]:
@@ -87,9 +94,14 @@ class Run:
         trace: Path | None,
     ) -> int:
         placement, report = self._placement, reports.report
-        nodes = [NodeProgram.of(node, parameters) for node in placement.nodes]
-        programs = [*self._bridge, *nodes, *self._helpers]
-        with closing(Runner(programs, report)) as runner, reports.kept(runner, self.program_names):
+        programs = [*self._bridge, *programs_of(placement, parameters)]
+        # Other shells, in other directories, read what it says.
+        mapfile = replace(self._mode.mapfile, path=self._mode.mapfile.path.absolute())
+        task = Task(Mapped(mapfile, placement), self._mode.joins, only_known=self._mode.only)
+        with ExitStack() as stack:
+            runner = stack.enter_context(closing(Runner(programs, report)))
+            applier = Applier(runner, task, parameters, reports.record)
+            stack.enter_context(reports.kept(runner, self.program_names, applier))
             closed = closed_notices(placement) if self._mode.virtual else ()
             for text in (*placement.notices, *closed):
                 report(Notice(text))
@@ -120,7 +132,7 @@ class Run:
         """Yield the run's directory; None if it cannot be created, and then there are no logs."""
         mode = self._mode
         info: dict[str, Any] = {
-            "mapfile": str(mode.mapfile.resolve()),
+            "mapfile": str(mode.mapfile.path.resolve()),
             "nodes": self.program_names,
             "detached": mode.detached,
             "joins": mode.joins,
@@ -186,13 +198,18 @@ class _Reports:
             self._control.report(event)
         self._report(event)
 
+    def record(self, nodes: list[str]) -> None:
+        """Store other names of the run's processes."""
+        if self._own is not None:
+            self._own.record(nodes)
+
     @contextmanager
-    def kept(self, runner: Runner, names: list[str]) -> Iterator[None]:
+    def kept(self, runner: Runner, names: list[str], applier: Applier) -> Iterator[None]:
         """Store logs and serve clients while the runner runs."""
         if self._own is None:
             yield
             return
-        self._control = control = Control(self._own.listener, runner)
+        self._control = control = Control(self._own.listener, runner, applier)
         logs = LogKeeper(self._own.directory.logs, names, self._report, control.log_changed)
         self._logs = logs
         try:
@@ -211,22 +228,8 @@ def _generated_files(placement: Placement, own: OwnRun | None) -> Iterator[Path]
             directory = Path(stack.enter_context(TemporaryDirectory(prefix="manycore_")))
         else:
             directory = own.directory.path / PARAMETERS
-        for node in placement.nodes:
-            for file in node.generated_files:
-                directory.mkdir(0o700, exist_ok=True)
-                write_private(directory / file.name, file.text)
+        write_parameters(placement.nodes, directory)
         yield directory
-
-
-def _check_scheduling(placement: Placement) -> None:
-    """Check before the start that this user may set the requested policies."""
-    refused = [
-        f"'{node.name}': {reason}"
-        for node in placement.nodes
-        if node.scheduling is not None and (reason := refusal(node.scheduling))
-    ]
-    if refused:
-        raise ManycoreError("\n".join(refused), EXIT_BAD_INPUT)
 
 
 def _describe(placement: Placement, bridge: Iterable[NodeProgram]) -> Platform:

@@ -18,14 +18,15 @@ from typing import Any
 
 from rmw_manycore_py.errors import reported
 from rmw_manycore_py.launch.run import Mode, Run
-from rmw_manycore_py.mapfile import check
+from rmw_manycore_py.mapfile import load_mapfile, resolve
 
 
 def main() -> int:
     """Run the mapfile that the first argument names; return the run's exit status."""
     mapfile = Path(sys.argv[1])
     try:
-        run = Run(check(mapfile), Mode(mapfile))
+        loaded = load_mapfile(mapfile)
+        run = Run(resolve(loaded, to_start=False), Mode(loaded))
         threading.Thread(target=_stop_after_parent, daemon=True).start()
         return run.run(lambda event: _tell(event.as_data()), all_started=_come_up)
     except Exception as error:

@@ -25,7 +25,7 @@ from rmw_manycore_py.launch.events import (
 from rmw_manycore_py.launch.processes.node_process import NodeProcess
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import NodeState
-from rmw_manycore_py.launch.schedule import ended, respawned, schedule, started
+from rmw_manycore_py.launch.schedule import ended, respawned, schedule, schedule_late, started
 from rmw_manycore_py.launch.timekeeper import Timekeeper
 from rmw_manycore_py.process.signals import SignalInbox
 
@@ -82,6 +82,16 @@ class Runner:
         self.watch(keeper, self._hear_timekeeper)
 
     @property
+    def is_virtual(self) -> bool:
+        """Return whether the nodes run in virtual time."""
+        return self._timekeeper is not None
+
+    @property
+    def is_stopping(self) -> bool:
+        """Return whether the run is ending."""
+        return self._stopping
+
+    @property
     def failed(self) -> tuple[str, ...]:
         """Names of the nodes that failed."""
         return tuple(n.program.name for n in self._nodes if n.state is NodeState.FAILED)
@@ -129,8 +139,14 @@ class Runner:
     def _next_node(self) -> NodeProcess | None:
         now_s = time.monotonic()
         waiting = (node for node in self._nodes if node.state is NodeState.WAITING)
-        due = (node for node in waiting if node.start_at_s <= now_s)
+        due = (node for node in waiting if node.start_at_s <= now_s and not self._is_left(node))
         return None if self._stopping else next(due, None)
+
+    def _is_left(self, node: NodeProcess) -> bool:
+        """Return whether another node on the core of a node is about to end."""
+        core = node.program.core
+        nodes = (one for one in self._nodes if not one.program.repeats)
+        return any(one.is_being_stopped and one.program.core == core for one in nodes)
 
     def _start_next(self, duration_s: float | None) -> None:
         node = self._next_node()
@@ -161,7 +177,7 @@ class Runner:
 
     def _watch_node(self, node: NodeProcess) -> None:
         core = node.program.core
-        self._report(Started(node.program.name, node.process.pid, *core, node.program.host_cpu))
+        self.report(Started(node.program.name, node.process.pid, *core, node.program.host_cpu))
         self.watch(node.output, lambda: self._read_output(node))
         self._selector.register(node.pidfd, selectors.EVENT_READ, lambda: self._leader_ended(node))
 
@@ -200,14 +216,16 @@ class Runner:
             return
         if not self._stopping and (successor := respawned(node)) is not None:
             assert node.ending is not None
-            self._report(Restarting(node.program.name, node.ending.reason, node.last_lines))
+            self.report(Restarting(node.program.name, node.ending.reason, node.last_lines))
             self._nodes[self._nodes.index(node)] = successor
         else:
             if self._timekeeper is not None:
                 self._timekeeper.gone(self._nodes.index(node))
             self._report_end(node)
         ended(self._nodes, node)
-        if node.program.rules.ends_run and not (node.is_wanted_again or node.is_held):
+        if node.is_removed:
+            self._nodes.remove(node)
+        elif node.program.rules.ends_run and not (node.is_wanted_again or node.is_held):
             self._stop(f"{node.program.name} has ended")
 
     def _restart(self, node: NodeProcess) -> None:
@@ -217,7 +235,7 @@ class Runner:
             self._report_end(node)
             self._stop(f"{node.program.name} ended {vain_starts} times before it had come up")
             return
-        self._report(Restarting(node.program.name, node.ending.reason, node.last_lines))
+        self.report(Restarting(node.program.name, node.ending.reason, node.last_lines))
         successor = NodeProcess(node.program)
         successor.vain_starts = vain_starts
         successor.start_at_s = max(time.monotonic(), node.start_at_s + RESTART_PAUSE_S)
@@ -256,7 +274,7 @@ class Runner:
             raise ManycoreError("the run is stopping: cannot restart its nodes")
         node = self.node(name)
         if terminal:
-            node.program = replace(node.program, terminal=True)
+            node.replace_program(replace(node.next_program, terminal=True))
         node.is_held = False
         if node.is_over:
             self._nodes[self._nodes.index(node)] = node.successor()
@@ -267,6 +285,31 @@ class Runner:
             if node.state is NodeState.RUNNING and not node.is_leaderless:
                 node.stop()
 
+    def change_node(self, program: NodeProgram) -> None:
+        """Restart a node as another program."""
+        node = self.node(program.name)
+        node.is_removed = False
+        node.replace_program(program)
+        self.restart_node(program.name)
+
+    def add_node(self, program: NodeProgram) -> None:
+        """Add a node, and start it as its rules allow."""
+        if any(node.program.name == program.name for node in self._nodes):
+            self.change_node(program)  # it was removed, and is about to end
+            return
+        node = NodeProcess(program)
+        node.was_asked_for = True
+        schedule_late(self._nodes, node)
+        self._nodes.append(node)
+
+    def remove_node(self, name: str) -> None:
+        """Stop a node, and forget it when it has ended."""
+        node = self.node(name)
+        node.is_removed = True
+        self.stop_node(name)
+        if node.is_over:
+            self._nodes.remove(node)
+
     def _take_signals(self, inbox: SignalInbox) -> None:
         for number in inbox.take():
             self.stop_all(number.name)
@@ -275,7 +318,7 @@ class Runner:
         if self._stopping:
             return
         self._stopping = True
-        self._report(Stopping(reason))
+        self.report(Stopping(reason))
         for node in self._nodes:
             if node.state is NodeState.RUNNING and not node.is_leaderless:
                 node.stop()
@@ -290,7 +333,7 @@ class Runner:
                 self._stop("the duration is over")
             elif report.kind == "still":
                 at_ms, _, why = report.text.partition(" ")
-                self._report(Notice(f"time stands still at {int(at_ms) / 1000} s: {why}"))
+                self.report(Notice(f"time stands still at {int(at_ms) / 1000} s: {why}"))
             else:
                 self.unwatch(self._timekeeper)
                 self._stop("the timekeeper has ended")
@@ -301,14 +344,14 @@ class Runner:
             if node.is_alive and not node.is_leaderless and node.deadline_s <= now_s:
                 number = node.stop()
                 if number:
-                    self._report(Insisting(node.program.name, number.name))
+                    self.report(Insisting(node.program.name, number.name))
 
     def _keep_deadlines(self) -> None:
         now_s = time.monotonic()
         if now_s >= self._end_s:
             self._end_s = float("inf")
             self._stop("the duration is over")
-        for node in self._nodes:
+        for node in tuple(self._nodes):
             if node.is_leaderless and now_s >= node.deadline_s:
                 self._collect(node)
         self._insist(now_s)
@@ -317,19 +360,22 @@ class Runner:
         """Return the seconds until the next deadline; None if there is none."""
         if self._next_node() or self._is_over():
             return 0
-        starts = [node.start_at_s for node in self._nodes if node.state is NodeState.WAITING]
+        now_s = time.monotonic()
+        waiting = (node for node in self._nodes if node.state is NodeState.WAITING)
+        # A node that is due waits for another one to leave its core.
+        starts = [node.start_at_s for node in waiting if node.start_at_s > now_s]
         due_s = min([self._end_s, *starts, *(node.deadline_s for node in self._nodes)])
-        return None if due_s == float("inf") else max(due_s - time.monotonic(), 0)
+        return None if due_s == float("inf") else max(due_s - now_s, 0)
 
     def _report_lines(self, node: NodeProcess, lines: list[str]) -> None:
         for line in lines:
-            self._report(Output(node.program.name, line))
+            self.report(Output(node.program.name, line))
 
     def _report_end(self, node: NodeProcess) -> None:
         ending = node.ending
         assert ending is not None
         tail = node.last_lines if ending.failed else ()
-        self._report(
+        self.report(
             Ended(
                 node.program.name,
                 node.state.value,
@@ -340,7 +386,7 @@ class Runner:
             )
         )
 
-    def _report(self, event: Event) -> None:
+    def report(self, event: Event) -> None:
         """Report an event; stop the run if the output is closed."""
         if self._silent:
             return

@@ -20,13 +20,26 @@ def schedule(nodes: Iterable[NodeProcess]) -> None:
             node.start_at_s = time.monotonic() + rules.delay_s
 
 
+def schedule_late(nodes: Iterable[NodeProcess], node: NodeProcess) -> None:
+    """Set the start time of a node that is added: it waits only for what is still to come."""
+    rules = node.program.rules
+    first = next((one for one in nodes if one.program.name == rules.after), None)
+    node.start_at_s = time.monotonic() + rules.delay_s
+    if first is not None and (
+        first.is_wanted_again
+        or first.state is NodeState.WAITING
+        or (rules.after_exit and first.is_alive)
+    ):
+        node.start_at_s = float("inf")
+
+
 def started(nodes: list[NodeProcess], node: NodeProcess) -> None:
     """Release nodes that wait for this start, and those repeated with it."""
     _release(nodes, node, after_exit=False)
     for index, one in enumerate(nodes):
         if _repeats_with(one, node):
             if one.is_over:
-                nodes[index] = NodeProcess(one.program)
+                nodes[index] = NodeProcess(one.next_program)
             one.is_wanted_again = one.is_alive
 
 
@@ -59,7 +72,7 @@ def respawned(node: NodeProcess) -> NodeProcess | None:
         return node.successor()
     if rules.respawn_delay_s is None or 0 <= rules.max_respawns <= node.respawns:
         return None
-    successor = NodeProcess(node.program)
+    successor = NodeProcess(node.next_program)
     successor.respawns = node.respawns + 1
     successor.start_at_s = time.monotonic() + rules.respawn_delay_s
     return successor

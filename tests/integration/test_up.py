@@ -110,7 +110,7 @@ def test_what_cannot_be_started_fails_up(manycore, tmp_path, platform) -> None:
 def test_a_platform_is_up_once(manycore, tmp_path, platform) -> None:
     mapfile = write(tmp_path, sleeper=SLEEPER)
     manycore("up", "-d", mapfile)
-    for verb in (("up", "-d"), ("run",)):
+    for verb in (("up",), ("up", "-d", "--node", "sleeper"), ("run",)):
         second = manycore(*verb, mapfile, status=1)
         pid = the_run(platform).info["pid"]
         assert f"platform '{platform}' is running already: {mapfile}, pid {pid}" in second.output
@@ -142,9 +142,9 @@ def test_nodes_are_stopped_and_restarted_one_by_one(manycore, tmp_path, platform
 
 def restart_patiently(node: str) -> None:
     """Restart a node and watch it for as long as a busy machine may take to run it."""
-    from rmw_manycore_py.cli import restart
+    from rmw_manycore_py.cli.common import node_watch
 
-    restart.LOOK_S = TIMEOUT_S
+    node_watch.LOOK_S = TIMEOUT_S
     run_manycore("restart", node)
 
 
@@ -183,8 +183,13 @@ def test_a_supervisor_that_is_killed(manycore, start, tmp_path, platform) -> Non
     assert follower.wait() == 0
     wait_until(lambda: not Path(f"/proc/{node}").exists(), "its node dies with it")
     assert "Hello World: 1" in manycore("logs", "talker").output
-    assert manycore("ps").lines == ["no run of `manycore run` or `manycore up`"]
+    (killed,) = manycore("ps", "--platform", platform).lines
+    assert killed.startswith(
+        f"platform {platform}: the run of {tmp_path / 'map.yaml'} was killed at"
+    )
     assert "is stopped" in manycore("stop").output
+    shown = manycore("ps", "--platform", platform).lines
+    assert shown == ["no run of `manycore run` or `manycore up`"]
     assert "is run by no `manycore run`" in manycore("restart", "talker", status=1).output
     wait_until(lambda: not leftovers(platform), "the receive thread has cleaned up")
     manycore("up", "-d", write(tmp_path, sleeper=SLEEPER))

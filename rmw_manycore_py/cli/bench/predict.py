@@ -91,7 +91,7 @@ def command(
             plan = Plan(mapfile, directory, mappings, repetitions, duration_s, seed)
             found[plan.name] = compared(plan, status.update)
         chains = reported_chains(report, seed) if report else []
-        queueing = queueing_of(*map(load, parts), _PARTS_S, seed) if parts else None
+        queueing = queueing_of(load(parts[0]), load(parts[1]), _PARTS_S, seed) if parts else None
     rows = {name: _row(of) for name, of in found.items()}
     if as_json:
         print_json(

@@ -19,10 +19,25 @@ def living_runs(platform: str) -> list[RunDirectory]:
 
 
 def no_run(platform: str) -> str:
-    """Return the message that a platform has no run, naming platforms that have one."""
+    """Return the message that a platform has no run: its last one, and platforms that have one."""
     others = sorted({run.platform for run in all_runs() if run.is_alive} - {platform})
     hint = f"; there is {', '.join(others)} (--platform)" if others else ""
-    return f"platform '{platform}' is run by no `manycore run` or `manycore up`{hint}"
+    last = "".join(f"; {end_of(run)}: {start_again(run)}" for run in runs_of(platform)[-1:])
+    return f"platform '{platform}' is run by no `manycore run` or `manycore up`{last}{hint}"
+
+
+def end_of(run: RunDirectory) -> str:
+    """Return how a run has ended; when it was killed is known by its last sign of life only."""
+    how = "has ended"
+    if killed := run.killed_after:
+        how = f"was killed at {killed.isoformat(timespec='seconds')} or later"
+    return f"the run of {run.info.get('mapfile', 'a mapfile')} {how}"
+
+
+def start_again(run: RunDirectory) -> str:
+    """Return the command that starts the mapfile of an ended run again."""
+    join = " --join" if run.info.get("joins") else ""
+    return f"`manycore up -d {run.info.get('mapfile', 'MAPFILE')}{join}` starts it again"
 
 
 def nodes_by_run(

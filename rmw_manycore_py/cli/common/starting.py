@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -50,7 +49,7 @@ def prepared_run(
         raise ManycoreError(text, EXIT_BAD_INPUT)
     occupied = occupied_cores(loaded.platform_name) if joins else ()
     placement = resolve(loaded, occupied)
-    return Run(placement, Mode(mapfile, joins, detached, virtual)), placement
+    return Run(placement, Mode(loaded, joins, detached, bool(nodes), virtual)), placement
 
 
 def virtual_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -94,5 +93,4 @@ def _only(mapfile: Mapfile, names: tuple[str, ...]) -> Mapfile:
             text = f"--node: no node '{name}' in {mapfile.path}; {hint}"
             raise ManycoreError(text, EXIT_BAD_INPUT)
     wanted = {known[name.lstrip("/")] for name in names}
-    chosen = {name: node for name, node in nodes.items() if name in wanted}
-    return replace(mapfile, sections=mapfile.sections.model_copy(update={"nodes": chosen}))
+    return mapfile.only(wanted)

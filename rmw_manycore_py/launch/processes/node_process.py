@@ -32,6 +32,7 @@ class NodeProcess:
 
     def __init__(self, program: NodeProgram) -> None:
         self.program = program
+        self.next_program = program  # of the process that replaces this one
         self.state = NodeState.WAITING
         self.ending: Ending | None = None
         self.deadline_s = float("inf")  # CLOCK_MONOTONIC, when the next step is due
@@ -39,6 +40,7 @@ class NodeProcess:
         self.respawns = 0  # number of earlier processes of the node
         self.is_wanted_again = False  # a new process replaces it when it is over
         self.is_held = False  # stopped by request: not respawned, the run continues
+        self.is_removed = False  # held, and no node of the run any more
         self.was_asked_for = False  # restarted by request: a failing start does not end the run
         self.pidfd = -1  # open while the node runs
         self.came_up = not program.supervised  # supervised processes report it
@@ -73,6 +75,11 @@ class NodeProcess:
             NodeState.TERMINATED,
             NodeState.KILLED,
         )
+
+    @property
+    def is_being_stopped(self) -> bool:
+        """Return whether the node was asked to end and is not over."""
+        return self.is_alive and self.state is not NodeState.RUNNING
 
     @property
     def is_over(self) -> bool:
@@ -131,10 +138,16 @@ class NodeProcess:
 
     def successor(self) -> NodeProcess:
         """Return the process that replaces this one on request."""
-        successor = NodeProcess(self.program)
+        successor = NodeProcess(self.next_program)
         successor.respawns = self.respawns
         successor.was_asked_for = True
         return successor
+
+    def replace_program(self, program: NodeProgram) -> None:
+        """Set the program of the next start."""
+        self.next_program = program
+        if self.state is NodeState.WAITING:
+            self.program = program
 
     def leader_ended(self) -> None:
         """Record that the node has ended; its children get a short time to finish output."""

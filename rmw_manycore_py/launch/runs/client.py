@@ -7,6 +7,7 @@ import select
 import socket
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from typing_extensions import Self
@@ -28,6 +29,11 @@ class Client:
     def __init__(self, run: RunDirectory, do: str, **arguments: Any) -> None:
         self._run = run
         self._lines = LineBuffer()
+        if _is_stopped(run):
+            raise ManycoreError(
+                f"the supervisor of platform '{run.platform}' (pid {run.info['pid']}) is stopped "
+                f"(SIGSTOP): `kill -CONT {run.info['pid']}` lets it go on"
+            )
         self.socket = _connected(run)
         self._messages: list[Message] = []
         try:
@@ -104,6 +110,14 @@ class Client:
             f"the supervisor of platform '{self._run.platform}' (pid {pid}) has not answered for "
             f"{ANSWER_TIMEOUT_S:g} s: is it stopped? `kill -CONT {pid}`"
         )
+
+
+def _is_stopped(run: RunDirectory) -> bool:
+    try:
+        stat = Path(f"/proc/{run.info['pid']}/stat").read_text()
+    except (OSError, KeyError):  # it ends, or its processes are not visible here
+        return False
+    return run.is_alive and stat.rpartition(")")[2].split()[0] == "T"
 
 
 def _connected(run: RunDirectory) -> socket.socket:

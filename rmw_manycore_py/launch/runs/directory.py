@@ -17,6 +17,7 @@ import socket
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ from rmw_manycore_py.launch.runs.private import (
     check_own,
     check_private,
     make_private,
+    replace_private,
     write_private,
 )
 
@@ -89,6 +91,25 @@ class RunDirectory:
         """Wait until the supervisor has ended."""
         with suppress(OSError), (self.path / _LOCK).open("rb") as lock:
             fcntl.flock(lock, fcntl.LOCK_SH)
+
+    @property
+    def killed_after(self) -> datetime | None:
+        """Return the last sign of life of a supervisor that was killed; None for other runs.
+
+        A supervisor that ends removes its socket before it releases the lock.
+        """
+        if self.is_alive or not (self.path / _CONTROL).exists():
+            return None
+        times_s = [0.0]
+        for file in (self.path / _INFO, *self.logs.glob("*")):
+            with suppress(OSError):
+                times_s.append(file.stat().st_mtime)
+        return datetime.fromtimestamp(max(times_s)).astimezone()
+
+    def forget(self) -> None:
+        """Treat a killed run as one that has ended."""
+        if not self.is_alive:
+            (self.path / _CONTROL).unlink(missing_ok=True)
 
     @property
     def info(self) -> Mapping[str, Any]:
@@ -166,6 +187,9 @@ def new_run(platform: str, info: Mapping[str, Any], joins: bool) -> Iterator[Own
             for ended in runs:
                 shutil.rmtree(ended.path, ignore_errors=True)
             runs = []
+        for run in runs:  # this run may take up a killed one
+            if run.info.get("mapfile") == info.get("mapfile"):
+                run.forget()
         path = directory / str(1 + max((run.number for run in runs), default=0))
         path.mkdir(0o700)
         lock = _open_lock(path / _LOCK)
@@ -187,6 +211,11 @@ class OwnRun:
 
     directory: RunDirectory
     listener: socket.socket
+
+    def record(self, nodes: list[str]) -> None:
+        """Store other names of the run's processes."""
+        info = {**self.directory.info, "nodes": nodes}
+        replace_private(self.directory.path / _INFO, json.dumps(info))
 
 
 def _check_free(platform: str, runs: list[RunDirectory]) -> None:

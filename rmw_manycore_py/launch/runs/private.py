@@ -64,6 +64,14 @@ def write_private(file: Path, text: str) -> None:
         opened.write(text)
 
 
+def replace_private(file: Path, text: str) -> None:
+    """Write such a file in place of an earlier one, which stays whole until then."""
+    new = file.with_name(f"{file.name}.new")
+    new.unlink(missing_ok=True)
+    write_private(new, text)
+    os.replace(new, file)
+
+
 def _check_parent(parent: Path) -> None:
     """Raise a ManycoreError if another user can replace an own directory in it."""
     status = parent.stat()

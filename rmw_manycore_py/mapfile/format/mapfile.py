@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rmw_manycore_py.mapfile.format.document import Document
-from rmw_manycore_py.mapfile.format.model import MapfileSections
+from rmw_manycore_py.mapfile.format.model import MapfileSections, NodeSection
 from rmw_manycore_py.platform.topology import Topology
 from rmw_manycore_py.ros.domain import default_platform
 
@@ -34,6 +35,15 @@ class Mapfile:
     def platform_name(self) -> str:
         """Name of the platform; default: the platform of nodes started by hand."""
         return self.sections.platform.name or default_platform()
+
+    def with_nodes(self, nodes: Mapping[str, NodeSection]) -> Mapfile:
+        """Return the mapfile with other nodes."""
+        return replace(self, sections=self.sections.model_copy(update={"nodes": dict(nodes)}))
+
+    def only(self, names: Collection[str]) -> Mapfile:
+        """Return the mapfile with some of its nodes."""
+        chosen = {name: node for name, node in self.sections.nodes.items() if name in names}
+        return self.with_nodes(chosen)
 
     def file(self, name: str) -> Path:
         """Return the path of a referenced file: relative to the mapfile, `~` expanded."""

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import chain, count
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
-from rmw_manycore_py.mapfile.placing.placement import BridgePlacement
+from rmw_manycore_py.mapfile.placing.placement import BridgePlacement, Placement
 from rmw_manycore_py.platform.topology import (
     RECEIVE_THREAD_CORE,
     Core,
@@ -17,7 +18,43 @@ from rmw_manycore_py.platform.topology import (
 )
 
 
-def assign_cores(mapfile: Mapfile, occupied: Collection[Core] = ()) -> dict[str, Core]:
+@dataclass(frozen=True)
+class Kept:
+    """Places of nodes that run: what a mapfile leaves open stays as it is.
+
+    :param cores: by node.
+    :param host_cpus: of cores for which no mapfile named one.
+    """
+
+    cores: Mapping[str, Core] = field(default_factory=dict)
+    host_cpus: Mapping[Core, int] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, mapfile: Mapfile, placement: Placement) -> Kept:
+        """Return the places in a placement of a mapfile."""
+        sections = mapfile.sections.nodes
+        nodes = placement.nodes
+        named = {node.place for node in nodes if sections[node.name].host_cpu is not None}
+        cpus = {core: cpu for core, cpu in placement.host_cpus.items() if core not in named}
+        return cls({node.name: node.place for node in nodes}, cpus)
+
+    def cores_in(self, mapfile: Mapfile, taken: Collection[Core]) -> dict[str, Core]:
+        """Return the cores that a mapfile leaves to nodes that have them."""
+        return {
+            name: core
+            for name, core in self.cores.items()
+            if (node := mapfile.sections.nodes.get(name)) is not None
+            and (node.cluster, node.core) == (core.cluster, None)
+            and core not in taken
+        }
+
+
+FRESH = Kept()
+
+
+def assign_cores(
+    mapfile: Mapfile, occupied: Collection[Core] = (), kept: Kept = FRESH
+) -> dict[str, Core]:
     """Return each node's core; nodes without one get the first free core of their cluster.
 
     Where the cores do not suffice, numbers beyond them follow, which `check_room` refuses.
@@ -28,10 +65,15 @@ def assign_cores(mapfile: Mapfile, occupied: Collection[Core] = ()) -> dict[str,
     taken = {Core(node.cluster, node.core) for node in nodes.values() if node.core is not None}
     _check_occupied(mapfile, taken & set(occupied))
     taken |= set(occupied)
+    stays = kept.cores_in(mapfile, taken)
+    taken |= set(stays.values())
     cores: dict[str, Core] = {}
     for name, node in nodes.items():
         if node.core is not None:
             cores[name] = Core(node.cluster, node.core)
+            continue
+        if name in stays:
+            cores[name] = stays[name]
             continue
         cluster = mapfile.topology.clusters[node.cluster - 1]
         numbers = chain(cluster.free, count(cluster.cores))
@@ -81,6 +123,7 @@ def assign_cpus(
     used: Sequence[Core],
     bridge: BridgePlacement | None,
     cpus: Sequence[int],
+    kept: Kept = FRESH,
 ) -> dict[Core, int]:
     """Return the host CPU of every used core: nodes, workers, then receive threads.
 
@@ -110,4 +153,6 @@ def assign_cpus(
     if bridge is not None:
         clusters |= {core.cluster for lane in bridge.cores for core in lane}
     receivers = [Core(cluster, RECEIVE_THREAD_CORE) for cluster in sorted(clusters)]
-    return assign_host_cpus([*used, *receivers], fixed, cpus)
+    cores = [*used, *receivers]
+    stay = {core: cpu for core, cpu in kept.host_cpus.items() if core in cores and cpu in cpus}
+    return assign_host_cpus(cores, {**stay, **fixed}, cpus)

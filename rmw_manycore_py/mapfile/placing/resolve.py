@@ -8,7 +8,13 @@ from collections.abc import Collection
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
 from rmw_manycore_py.mapfile.launch_file import LaunchFile
-from rmw_manycore_py.mapfile.placing.cores import assign_cores, assign_cpus, worker_cores
+from rmw_manycore_py.mapfile.placing.cores import (
+    FRESH,
+    Kept,
+    assign_cores,
+    assign_cpus,
+    worker_cores,
+)
 from rmw_manycore_py.mapfile.placing.crossings import bridge_placement
 from rmw_manycore_py.mapfile.placing.foreign import foreign_starts
 from rmw_manycore_py.mapfile.placing.imports import check_imports
@@ -37,17 +43,23 @@ from rmw_manycore_py.platform.topology import Core, usable_cpus
 
 
 def resolve(
-    mapfile: Mapfile, occupied: Collection[Core] = (), *, to_start: bool = True
+    mapfile: Mapfile,
+    occupied: Collection[Core] = (),
+    *,
+    to_start: bool = True,
+    kept: Kept = FRESH,
 ) -> Placement:
     """Resolve everything a mapfile refers to.
 
     :param occupied: cores used by nodes of other runs on the platform.
     :param to_start: False to inspect only: then nodes of a plan need not be installed.
+    :param kept: places of the mapfile's nodes that run already.
     :raises MapfileError: for everything that does not exist.
     """
     launch = read_launch(mapfile)
     is_plan = mapfile.sections.plan and not to_start
-    return _placement(mapfile, node_starts(mapfile, launch, is_plan=is_plan), launch, occupied)
+    starts = node_starts(mapfile, launch, is_plan=is_plan)
+    return _placement(mapfile, starts, launch, occupied, kept)
 
 
 def resolve_places(mapfile: Mapfile) -> Placement:
@@ -65,13 +77,14 @@ def _placement(
     starts: dict[str, NodeStart],
     launch: LaunchFile | None,
     occupied: Collection[Core],
+    kept: Kept = FRESH,
 ) -> Placement:
-    cores = assign_cores(mapfile, occupied)
+    cores = assign_cores(mapfile, occupied, kept)
     workers, worker_problems = worker_cores(mapfile, {*cores.values(), *occupied})
     of_workers = [core for one in workers.values() for core in one]
     bridge = bridge_placement(mapfile, starts, {*cores.values(), *of_workers, *occupied})
     cpus = usable_cpus()
-    host_cpus = assign_cpus(mapfile, [*cores.values(), *of_workers], bridge, cpus)
+    host_cpus = assign_cpus(mapfile, [*cores.values(), *of_workers], bridge, cpus, kept)
     launched = {name: start.launched for name, start in starts.items()}
     rules = {name: launch_rules(name, launched) for name in starts}
     nodes = tuple(

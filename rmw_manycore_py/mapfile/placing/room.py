@@ -80,10 +80,7 @@ class Placed:
             for name, node in sections.nodes.items()
             if name in moves
         }
-        nodes_of_file = {**sections.nodes, **moved}
-        changed = replace(
-            self.mapfile, sections=sections.model_copy(update={"nodes": nodes_of_file})
-        )
+        changed = self.mapfile.with_nodes({**sections.nodes, **moved})
         return replace(self, mapfile=changed, nodes=nodes)
 
 

@@ -157,11 +157,16 @@ def test_a_run_lives_as_long_as_its_process() -> None:
     holder.communicate()
     run.wait()
     assert not run.is_alive
+    assert run.killed_after is not None
+    with new_run("platform", {}, joins=True):
+        assert run.killed_after is None, "a run of its mapfile has taken it up"
     with new_run("platform", {}, joins=False) as third:
         assert third.directory.number == 1, "it has taken the place of what has ended"
+        assert third.directory.killed_after is None
         with third.directory.connect(1) as client:
             client.settimeout(1)
             third.listener.accept()[0].close()
+    assert third.directory.killed_after is None, "it has ended"
     remove_ended("platform")
     assert runs_of("platform") == []
 
