@@ -95,6 +95,8 @@ class Task:
             raise self._kept("the platform's shape")
         if not self.joins and mapfile.sections.topics != old.sections.topics:
             raise self._kept("the section 'topics'")
+        if mapfile.sections.clock != old.sections.clock:
+            raise self._kept("the clock")
         return mapfile
 
     def _kept(self, what: str) -> ManycoreError:

@@ -78,7 +78,7 @@ class Runner:
         self._timekeeper = keeper
         for rank, node in enumerate(self._nodes):
             environment = keeper.environment(node.program.environment, rank)
-            node.program = replace(node.program, environment=environment)
+            node.replace_program(replace(node.program, environment=environment))
         self.watch(keeper, self._hear_timekeeper)
 
     @property

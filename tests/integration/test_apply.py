@@ -214,6 +214,7 @@ def test_what_a_running_platform_keeps_is_refused(manycore, mapfile, platform) -
     changes = {
         "the platform's shape has changed": ("platform: {clusters: 3}\n" + topics, moved),
         "the section 'topics' has changed": (topics.replace("65536", "131072"), moved),
+        "the clock has changed": (f"clock: virtual\n{topics}", moved),
         "what is bridged has changed": (topics, f"{moved}, {ROUTES}"),
         "expected an installed Python module": (topics, "cluster: 1, module: no_such_module"),
     }
@@ -226,6 +227,18 @@ def test_what_a_running_platform_keeps_is_refused(manycore, mapfile, platform) -
     other = mapfile.with_name("other.yaml")
     write(other, sleeper=sleeper)
     assert "is running already" in manycore("up", "-d", other, status=1).output
+    manycore("stop")
+
+
+def test_nodes_in_virtual_time_keep_their_places(manycore, mapfile, platform) -> None:
+    talker = "module: rmw_manycore_py.examples.talker"
+    write(mapfile, "clock: virtual\n", talker=f"cluster: 1, {talker}")
+    manycore("up", "-d", mapfile)
+    before = nodes_of(manycore, platform)
+    for words in (("move", "talker", "2"), ("up", "-d", mapfile)):
+        write(mapfile, "clock: virtual\n", talker=f"cluster: 2, {talker}")
+        assert "the run is in virtual time" in manycore(*words, status=1).output
+    assert nodes_of(manycore, platform) == before
     manycore("stop")
 
 
