@@ -53,6 +53,9 @@ def test_it_is_an_array(taken):
     assert type(found).__name__ == "array"
     assert repr(found) == repr(values)
     assert found.tobytes() == values.tobytes()
+    assert type(found) in [list, array.array]
+    assert type(found) in {list, array.array}
+    assert type(found) not in [list, bytearray]
     assert type(found)(found.typecode, [1, 2]) == array.array(found.typecode, [1, 2])
     with pytest.raises(TypeError):
         hash(found)

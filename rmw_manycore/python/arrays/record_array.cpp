@@ -189,6 +189,29 @@ PyMethodDef * methods() {
   return methods.data();
 }
 
+/// The type of arrays in records equals array.array: programs look for `type(value)` in lists and
+/// sets of types.
+PyObject * compare_types(PyObject * self, PyObject * other, int operation) {
+  if (operation != Py_EQ && operation != Py_NE) {
+    return Py_NewRef(Py_NotImplemented);
+  }
+  const bool is_equal = other == self || other == reinterpret_cast<PyObject *>(array_type);
+  return PyBool_FromLong(static_cast<long>(is_equal == (operation == Py_EQ)));
+}
+
+Py_hash_t hash_type(PyObject *) { return PyObject_Hash(reinterpret_cast<PyObject *>(array_type)); }
+
+PyObject * make_metaclass() {
+  PyType_Slot slots[] = {
+    {Py_tp_doc, const_cast<char *>("The type of a type that equals array.array.")},
+    {Py_tp_richcompare, reinterpret_cast<void *>(compare_types)},
+    {Py_tp_hash, reinterpret_cast<void *>(hash_type)},
+    {0, nullptr}};
+  PyType_Spec spec = {"_rmw_manycore_arrays.type", 0, 0, Py_TPFLAGS_DEFAULT, slots};
+  const Owned bases(PyTuple_Pack(1, reinterpret_cast<PyObject *>(&PyType_Type)));
+  return bases ? PyType_FromSpecWithBases(&spec, bases.get()) : nullptr;
+}
+
 }  // namespace
 
 PyTypeObject * make_record_array_type(PyTypeObject * base) {
@@ -208,8 +231,12 @@ PyTypeObject * make_record_array_type(PyTypeObject * base) {
   PyType_Spec spec = {
     "_rmw_manycore_arrays.array", sizeof(RecordArray), 0, Py_TPFLAGS_DEFAULT, slots};
   const Owned bases(PyTuple_Pack(1, base));
-  return bases ? reinterpret_cast<PyTypeObject *>(PyType_FromSpecWithBases(&spec, bases.get()))
-               : nullptr;
+  Owned metaclass(bases ? make_metaclass() : nullptr);
+  PyObject * const type = metaclass ? PyType_FromSpecWithBases(&spec, bases.get()) : nullptr;
+  if (type != nullptr) {
+    Py_SET_TYPE(type, reinterpret_cast<PyTypeObject *>(metaclass.release()));
+  }
+  return reinterpret_cast<PyTypeObject *>(type);
 }
 
 PyObject * make_record_array(
