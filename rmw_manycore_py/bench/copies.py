@@ -26,6 +26,7 @@ def _inside(zero_copy: str, name: str) -> Middleware:
 
 
 WITHOUT = _inside("sole", "without copies")
+READ_ONLY = _inside("read_only", "without copies, read-only")
 WITH = _inside("off", "with copies")
 
 
@@ -45,7 +46,7 @@ def _measure_size(run: Run, size: str) -> list[Result]:
             node = session.python("copies", 0, PAYLOADS[size], WARM_UP, messages)
             return in_us(node.finish()["samples_ns"])
 
-    return run.interleave(_question(size), "us", for_each((WITHOUT, WITH), take))
+    return run.interleave(_question(size), "us", for_each((WITHOUT, READ_ONLY, WITH), take))
 
 
 def _question(size: str) -> str:
@@ -56,7 +57,11 @@ QUESTION = Question(
     "copies",
     measure,
     (
-        *(Goal(_question(s), WITHOUT.name, "within", FLAT_US) for s in SIZES),
+        *(
+            Goal(_question(size), contender.name, "within", FLAT_US)
+            for size in SIZES
+            for contender in (WITHOUT, READ_ONLY)
+        ),
         Goal(_question("8 MiB"), WITHOUT.name, "better", 20.0, WITH.name),
     ),
     "publisher and subscription in one process, on one CPU",

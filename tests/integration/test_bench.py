@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from rmw_manycore_py.bench.cameras import MIDDLEWARES, SMALL, detections
 from rmw_manycore_py.bench.hosts import can_have_hosts
 from support import TIMEOUT_S, wait_until
 from support.processes.commands import manycore_command
@@ -33,6 +34,7 @@ OWN = only("(block)")
 FAST_DDS_AND_OURS = "Fast DDS + platform"
 OTHERS = only("64 B: futex", "64 B: pipe", "64 B: Fast DDS", "1 MiB: Fast DDS")
 RCLPY = only("64 B: manycore run", "8 MiB: manycore run, inside", "1 MiB: manycore inside (block)")
+COPIES = only("copies", "numpy: manycore", "asleep: manycore")
 STARTUP = only("by hand: manycore inside", "set: manycore between")
 SPLIT = only("1 derivatives, 2")
 PIPELINE = only("1000 waypoints: session", "SMEM: left")
@@ -73,7 +75,7 @@ def test_a_contender_that_does_not_exist_is_an_error() -> None:
         ("rmw", "round-trip", *OWN),
         ("rmw", "round-trip", *OTHERS),
         ("rmw", "first-message"),
-        ("copies",),
+        ("copies", *COPIES),
         ("fields",),
         ("rclpy", *RCLPY),
         ("startup", *STARTUP),
@@ -98,6 +100,14 @@ def test_a_bench_measures_every_contender(arguments: tuple[str, ...]) -> None:
     for result in run_bench(*arguments)["results"]:
         assert result["samples"] > 0
         assert result["median"] > 0
+
+
+def test_images_get_through_the_filter_to_the_detector() -> None:
+    images = 8
+    found = detections(SMALL, MIDDLEWARES[0], images)
+    assert 0 < found.arrived <= images
+    assert found.age_ms > 0
+    assert found.cpu_s > 0
 
 
 def all_reached(report: dict[str, Any]) -> bool:

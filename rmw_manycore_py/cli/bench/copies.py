@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.bench import copies
+from rmw_manycore_py.bench import camera_hop, copies, fields, image_round_trip, lent, readers
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
 
@@ -15,8 +15,9 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.command("copies")
 @bench_options
 def command(**options: Any) -> None:
-    """Measure takes of large messages in rclpy.
+    """Measure large messages in rclpy.
 
-    With and without copies.
+    With and without copies: takes, round trips, fields, several readers, a camera; and lent ones.
     """
-    answer([copies.QUESTION], **options)
+    modules = (copies, image_round_trip, fields, readers, camera_hop, lent)
+    answer([module.QUESTION for module in modules], **options)
