@@ -117,6 +117,7 @@ install_for_tests() {
   install_extra record
   install_extra view
   install_extra zenoh
+  install_extra advise
   touch .venv/tests
 }
 

@@ -27,6 +27,7 @@ VERBS = {
     "trace": "rmw_manycore_py.cli.trace:command",
     "profile": "rmw_manycore_py.cli.profile:command",
     "simulate": "rmw_manycore_py.cli.simulate:command",
+    "advise": "rmw_manycore_py.cli.advise:command",
     "topic": "rmw_manycore_py.cli.topic:command",
     "node": "rmw_manycore_py.cli.node:command",
     "service": "rmw_manycore_py.cli.service:command",
@@ -51,7 +52,7 @@ SECTIONS = {
         "bridge",
     ),
     "Look": ("status", "top", "view", "trace"),
-    "Plan": ("profile", "simulate"),
+    "Plan": ("profile", "simulate", "advise"),
     "ROS 2": (
         "topic", "node", "service", "action", "param", "lifecycle", "interface", "component", "bag",
     ),

@@ -48,6 +48,13 @@ SHOWN = {
         r"topic_name: /image_raw",
     ),
     "tutorials/offload_ndt.md": (r"ndt_scan_matcher", r"answered", r"/points_raw"),
+    "tutorials/which_mapping.md": (
+        r"5 nodes, \d+ callbacks",
+        r"move to another cluster\.",
+        r"no mapping keeps all of these limits: ",
+        r"^exit status 2$",
+        r"between clusters: .*: less$",
+    ),
     "tutorials/own_stack.md": (r"recorder", r"average rate", r"Double value is", r"frame_id"),
     "how-to/domain_bridge.md": (r"^data: 'Hello World", r"-> +/chatter"),
     "how-to/ros2_launch.md": (r"listener \| .*I heard",),
@@ -61,6 +68,7 @@ MARKS = {
     "tutorials/laptop_to_chip.md": pytest.mark.long,
     "tutorials/offload_ndt.md": pytest.mark.stress,
     "tutorials/own_stack.md": pytest.mark.stress,
+    "tutorials/which_mapping.md": pytest.mark.long,
 }
 PAGES = [pytest.param(page, marks=MARKS.get(page, ())) for page in sorted(SHOWN)]
 

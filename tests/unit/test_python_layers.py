@@ -41,7 +41,7 @@ LAYERS = [
     (".interfaces", ".platform", ".profile", ".routes"),
     (".mapfile", ".picture", ".transport"),
     (".create", ".emcos", ".launch", ".mapping", ".prediction", ".view", "rmw_manycore_bridge"),
-    (".recording", "rmw_manycore_py"),
+    (".advice", ".recording", "rmw_manycore_py"),
     (".ndt",),
     (".bench",),
     (".papers",),

@@ -10,8 +10,11 @@ import click
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.mapfile.profiled import plan_of
 from rmw_manycore_py.mapfile.template import init
 from rmw_manycore_py.platform.topology import PROFILES
+from rmw_manycore_py.platform.topology import profile as platform_shape
+from rmw_manycore_py.profile.files import load
 
 
 @click.command(
@@ -21,6 +24,7 @@ from rmw_manycore_py.platform.topology import PROFILES
         "manycore map init src/ launch/demo.launch.xml --profile coolidge -o map.yaml",
         "manycore map init launch/robot.launch.py namespace:=left -o map.yaml",
         "manycore map init --plan robot.launch.py --profile coolidge -o plan.yaml",
+        "manycore map init app.profile.json --profile coolidge -o plan.yaml",
     ),
 )
 @click.argument("sources", nargs=-1, required=True)
@@ -48,11 +52,15 @@ def command(sources: tuple[str, ...], profile: str, plan: bool, output: Path | N
     Only the clusters are left to choose. SOURCES are Python files, directories of them, and at
     most one launch file with values for its arguments as NAME:=VALUE. To plan a chip for a
     launch file, its packages need not be installed: --plan spreads all of its nodes over the
-    clusters, and 'map check' and 'map show' take them.
+    clusters, and 'map check' and 'map show' take them. Of an application that only a profile
+    describes, the profile is the single source.
     """
-    arguments = dict(source.split(":=", 1) for source in sources if ":=" in source)
-    files = [Path(source) for source in sources if ":=" not in source]
-    text = init(files, output.parent if output else None, profile, arguments, plan=plan)
+    if len(sources) == 1 and sources[0].endswith(".json"):
+        text = plan_of(load(Path(sources[0])), platform_shape(profile))
+    else:
+        arguments = dict(source.split(":=", 1) for source in sources if ":=" in source)
+        files = [Path(source) for source in sources if ":=" not in source]
+        text = init(files, output.parent if output else None, profile, arguments, plan=plan)
     if output is None:
         echo(text, nl=False)
         return

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from rmw_manycore_py.advice.warnings import warnings_of
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples, json_option, rates_option
 from rmw_manycore_py.cli.common.printing import (
@@ -28,30 +29,41 @@ from rmw_manycore_py.mapping.rates import TracedFacts
 from rmw_manycore_py.mapping.words import as_data as facts_as_data
 from rmw_manycore_py.mapping.words import verdict
 from rmw_manycore_py.platform.topology import as_host_cpu, host_cpu_text
+from rmw_manycore_py.profile.files import load
 from rmw_manycore_py.routes.route import DIRECTIONS
 
 
 @click.command(
     "show",
     epilog=examples(
-        "manycore map show three_nodes", "manycore map show three_nodes --trace trace.json"
+        "manycore map show three_nodes",
+        "manycore map show three_nodes --trace trace.json",
+        "manycore map show map.yaml --profile app.profile.json",
     ),
 )
 @mapfile_argument()
 @rates_option
+@click.option(
+    "--profile",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Warn of what this profile says against the mapping.",
+)
 @json_option
-def command(mapfile: Path, trace: Path | None, as_json: bool) -> None:
+def command(mapfile: Path, trace: Path | None, profile: Path | None, as_json: bool) -> None:
     """Show the placement of MAPFILE.
 
     Nodes, topic table, what crosses clusters, memory when the nodes have started; with a trace,
-    rates and loads.
+    rates and loads; with a profile, warnings.
     """
-    placement = resolve(load_mapfile(mapfile), to_start=False)
+    loaded = load_mapfile(mapfile)
+    placement = resolve(loaded, to_start=False)
     facts = facts_of(placement, load_rates(trace) if trace else None)
+    warnings = [*warnings_of(loaded, placement, load(profile))] if profile else []
     if as_json:
-        print_json({**as_data(placement), "mapping": facts_as_data(facts)})
+        found = {**as_data(placement), "mapping": facts_as_data(facts), "warnings": warnings}
+        print_json(found)
         return
-    print_notices(placement.notices)
+    print_notices([*placement.notices, *warnings])
     _show_nodes(placement)
     _show_rules(placement)
     _show_topics(placement)

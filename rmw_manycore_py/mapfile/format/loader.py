@@ -14,7 +14,12 @@ from rmw_manycore_py.mapfile.format.checks import (
     check_placement,
     check_starts,
 )
-from rmw_manycore_py.mapfile.format.document import Document, KeyPath, read_yaml
+from rmw_manycore_py.mapfile.format.document import (
+    Document,
+    KeyPath,
+    parse_yaml,
+    read_text,
+)
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
 from rmw_manycore_py.mapfile.format.model import MapfileSections, PlatformSection
 from rmw_manycore_py.mapfile.format.normalise import normalise
@@ -23,15 +28,19 @@ from rmw_manycore_py.mapfile.format.validation import describe, problems_of
 from rmw_manycore_py.platform.topology import Topology, profile
 
 
-def load_mapfile(path: Path | str, *, starts_nodes: bool = True) -> Mapfile:
+def load_mapfile(
+    path: Path | str, *, starts_nodes: bool = True, text: str | None = None
+) -> Mapfile:
     """Read and validate a mapfile or a .map list.
 
     With `starts_nodes=False` nodes need no way to start, since another launcher starts them.
 
+    :param text: what the file will contain, if it is not written yet.
     :raises MapfileError: with all problems found.
     """
     path = Path(path)
-    document = read_yaml(path, read_by_rcl=_is_parameter)
+    content = read_text(path) if text is None else text
+    document = parse_yaml(content, path, read_by_rcl=_is_parameter)
     if isinstance(document.data, list):
         document = from_list(document)
     if not isinstance(document.data, dict):
