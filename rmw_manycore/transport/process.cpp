@@ -345,6 +345,20 @@ bool Process::is_inherited() const noexcept { return impl_->membership->is_inher
 
 void Process::require_membership() const { impl_->membership->require(); }
 
+std::vector<ProcessInfo> Process::beside() const {
+  const Placement & own = impl_->placement;
+  std::vector<ProcessInfo> found;
+  for (ProcessInfo & other : impl_->graph->processes()) {
+    const bool is_same_core =
+      own.core && other.cluster == own.cluster && other.core == static_cast<int32_t>(*own.core);
+    const bool is_other = other.slot != impl_->slot && other.pid != getppid();
+    if (is_same_core && is_other && impl_->registry->lifelines().is_held(other.slot)) {
+      found.push_back(std::move(other));
+    }
+  }
+  return found;
+}
+
 void Process::begin_context() noexcept { impl_->count_contexts(1); }
 
 void Process::end_context() noexcept { impl_->count_contexts(-1); }

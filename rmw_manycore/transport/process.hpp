@@ -73,6 +73,9 @@ public:
   /// platform was removed.
   void require_membership() const;
 
+  /// Other live processes on the core of this one, except its parent; none without a core.
+  std::vector<ProcessInfo> beside() const;
+
   /// Count the ROS contexts of this process. Once all have ended, the end of the process counts as
   /// intended, whether or not it leaves the platform: tools do not report a death.
   void begin_context() noexcept;

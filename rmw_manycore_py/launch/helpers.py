@@ -34,7 +34,7 @@ def _helper(node: PlacedNode, name: str, request: dict[str, Any]) -> NodeProgram
     return NodeProgram(
         name=name,
         command=own_program("rmw_manycore_py.launch.bring_up", json.dumps(request)),
-        environment=program_environment(node.env),
+        environment=program_environment({**node.env, "MANYCORE_SHARED_CORE": "1"}),
         core=node.place,
         host_cpus=(),
         directory=node.cwd,

@@ -302,3 +302,23 @@ def test_a_process_of_another_run_keeps_its_core(manycore, mapfile, platform) ->
     expected = {"sleeper": (1, 1), "talker": (2, 3), "other": (3, 1)}
     assert places(nodes_of(manycore, platform)) == expected
     manycore("stop")
+
+
+def test_two_processes_on_one_core_are_told(manycore, start, mapfile, platform) -> None:
+    command = [sys.executable, "-m", "rmw_manycore_py.examples.talker"]
+    first = start(command, MANYCORE_CORE="3")
+    first.wait_for("Hello World")
+    second = start(command, MANYCORE_CORE="3")
+    warning = second.wait_for("cluster 1 core 3 is also that of .*").group()
+    assert f"(pid {first.pid}): set another MANYCORE_CORE" in warning
+    other = start(command, MANYCORE_CORE="4")
+    other.wait_for("Hello World")
+    assert "is also that of" not in first.output + other.output
+    for program in (first, second, other):
+        program.stop()
+    talker = "cluster: 1, core: 1, module: rmw_manycore_py.examples.talker"
+    write(mapfile, "allow_shared_cores: true\n", one=talker, two=talker)
+    manycore("up", "-d", mapfile)
+    wait_until(lambda: len(manycore("node", "list").lines) == 2, "both have joined")
+    assert "is also that of" not in manycore("logs").output
+    manycore("stop")

@@ -71,6 +71,22 @@ manycore::Placement placement_of(const rmw_init_options_t & options, size_t doma
   return placement;
 }
 
+/// Says that processes share a core: started by hand, one may have been meant for another. A
+/// mapfile that allows it sets MANYCORE_SHARED_CORE.
+void warn_if_shared(const manycore::Process & process) {
+  const char * const is_meant = std::getenv("MANYCORE_SHARED_CORE");
+  if (is_meant != nullptr && *is_meant != 0) {
+    return;
+  }
+  for (const manycore::ProcessInfo & other : process.beside()) {
+    RCUTILS_LOG_WARN_NAMED(
+      identifier,
+      "cluster %u core %d is also that of '%s' (pid %d): set another MANYCORE_CORE, or "
+      "MANYCORE_SHARED_CORE=1 if this is meant",
+      other.cluster, other.core, other.label.c_str(), other.pid);
+  }
+}
+
 }  // namespace
 }  // namespace rmw_manycore
 
@@ -102,6 +118,7 @@ rmw_ret_t rmw_init(const rmw_init_options_t * options, rmw_context_t * context) 
     auto impl = std::make_unique<rmw_context_impl_s>(
       manycore::Process::join(rmw_manycore::placement_of(*options, created.actual_domain_id)));
     rmw_manycore::check(rmw_init_options_copy(options, &created.options));
+    rmw_manycore::warn_if_shared(*impl->process);
     impl->process->begin_context();
     created.impl = impl.release();
     *context = created;

@@ -106,6 +106,8 @@ def _environment(
     }
     if design := node.receive:
         env["MANYCORE_RECEIVE"] = design
+    if mapfile.sections.allow_shared_cores:
+        env["MANYCORE_SHARED_CORE"] = "1"
     if mapfile.sections.malloc_tuning:
         env["MALLOC_TRIM_THRESHOLD_"] = env["MALLOC_MMAP_THRESHOLD_"] = _MALLOC_THRESHOLD
     # A launch file may set all variables except those of the placement.
