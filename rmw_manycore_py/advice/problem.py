@@ -45,7 +45,7 @@ class Flow:
     """Messages of a publisher, and the units that receive them.
 
     :param landing_bytes: memory that they take in each other cluster that receives them.
-    :param is_hot: whether they are part of the chain that matters.
+    :param is_hot: whether this repeats a part of another flow, for the chain that matters.
     """
 
     topic: str
@@ -164,7 +164,7 @@ class Traffic:
         """Return the traffic of a mapping."""
         times = [(one, len(one.crossed(clusters))) for one in flows]
         return cls(
-            sum(count * one.messages_per_s for one, count in times),
+            sum(count * one.messages_per_s for one, count in times if not one.is_hot),
             sum(count * one.bytes_per_s for one, count in times),
             sum(count * one.messages_per_s for one, count in times if one.is_hot),
         )

@@ -57,7 +57,7 @@ class Weights:
     def of(cls, problem: Problem, emphasis: Emphasis) -> Weights:
         """Return the weights of a problem."""
         flows = problem.flows
-        messages = _shares([one.messages_per_s for one in flows])
+        messages = _shares([0 if one.is_hot else one.messages_per_s for one in flows])
         size = _shares([one.bytes_per_s for one in flows])
         hot = _shares([one.messages_per_s if one.is_hot else 0 for one in flows])
         crossing = tuple(

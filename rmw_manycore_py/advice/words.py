@@ -48,6 +48,8 @@ def _reason(problem: Problem, clusters: Clusters, unit: int) -> str:
     """Return with which unit of its cluster a unit exchanges most, that it did not before."""
     rates: dict[int, float] = defaultdict(float)
     for flow in problem.flows:
+        if flow.is_hot:
+            continue
         if flow.publisher == unit:
             for receiver in flow.receivers:
                 rates[receiver] += flow.messages_per_s
@@ -111,7 +113,7 @@ def _limits(problem: Problem, best: Candidate) -> Iterator[str]:
         if rate:
             yield f"{wish.text} lets {rate:.1f} messages/s cross."
     if best.is_best:
-        yield "No mapping with fewer costs before the simulation exists."
+        yield f"Before the simulation, no mapping is better for: {best.name}."
 
 
 def _torn(problem: Problem, clusters: Clusters, units: tuple[int, ...]) -> float:
@@ -119,7 +121,7 @@ def _torn(problem: Problem, clusters: Clusters, units: tuple[int, ...]) -> float
     return sum(
         flow.messages_per_s * len(flow.crossed(clusters))
         for flow in problem.flows
-        if flow.publisher in units or flow.receivers & set(units)
+        if not flow.is_hot and (flow.publisher in units or flow.receivers & set(units))
     )
 
 

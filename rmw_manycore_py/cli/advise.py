@@ -25,7 +25,6 @@ from rmw_manycore_py.cli.common.printing import (
 )
 from rmw_manycore_py.mapfile.format.document import read_text
 from rmw_manycore_py.profile.files import load
-from rmw_manycore_py.whole_file import replacing
 
 _NODES = "NODE,.."
 
@@ -148,8 +147,8 @@ def command(
 
 
 def _write(path: Path, text: str) -> None:
-    with writing(path), replacing(path) as file:
-        file.write(text.encode())
+    with writing(path):
+        path.write_text(text)
 
 
 def _report(text: str) -> None:

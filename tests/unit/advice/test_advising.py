@@ -149,6 +149,8 @@ def test_a_chain_on_a_host_has_priorities(tmp_path: Path) -> None:
     assert result.exit_code == 0, result.output
     names = {one["name"] for one in json.loads(result.stdout)["candidates"]}
     assert any(name.endswith(", in real time") for name in names)
+    now = next(o for o in json.loads(result.stdout)["candidates"] if o["name"] == "as it is")
+    assert now["messages_per_s"] == pytest.approx(20)  # the chain counts once
     result = advise(mapfile, file, *chain, "--no-priorities", "--json")
     names = {one["name"] for one in json.loads(result.stdout)["candidates"]}
     assert not any(name.endswith(", in real time") for name in names)
