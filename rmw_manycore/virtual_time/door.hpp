@@ -25,7 +25,7 @@ struct Door {
   /// Blocks until it is this program's turn to start. Only the first call of a process does.
   void (*join)() noexcept;
   /// Blocks until the timekeeper lets this thread go on: the epoch has changed or it is `due_ns`.
-  /// False if time is not virtual any more.
+  /// False if time is not virtual any more, or the process has not joined.
   bool (*wait)(const Awaited & awaited, int64_t due_ns) noexcept;
   /// Lets the others that are due now go first. An `empty` poll, repeated at the same time, takes
   /// time: a loop of polls comes to its end.
@@ -37,7 +37,8 @@ struct Door {
 }  // namespace manycore::virtual_time
 
 extern "C" {
-/// The door, or nullptr in a process that has not joined. Defined by the preloaded library only.
+/// The door, or nullptr in a process that no run in virtual time has started. Defined by the
+/// preloaded library only.
 [[gnu::weak, gnu::visibility("default")]] const manycore::virtual_time::Door *
 manycore_virtual_time() noexcept;
 }

@@ -150,7 +150,7 @@ bool Member::wait_in(Seat & seat) noexcept {
 }
 
 bool Member::wait(const Awaited & awaited, int64_t due_ns) noexcept {
-  Seat * const seat = is_over() ? nullptr : seat_of_this_thread();
+  Seat * const seat = is_over() || !has_joined() ? nullptr : seat_of_this_thread();
   if (seat == nullptr) {
     return false;
   }

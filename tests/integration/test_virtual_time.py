@@ -130,6 +130,15 @@ def test_a_node_is_killed_and_starts_again_at_the_same_times(mapfile, log_of) ->
     assert births == [f"born {START_NS + n * NS_PER_S} {START_NS + n * NS_PER_S}" for n in range(4)]
 
 
+def test_a_shell_starts_a_node(mapfile, log_of) -> None:
+    file = mapfile("talker", "echo")
+    text = file.read_text()
+    start = f"[{sys.executable}, {timed.__file__}, talker]"
+    assert start in text
+    file.write_text(text.replace(start, f"[sh, -c, '{start[1:-1].replace(',', '')}; exit 0']"))
+    assert len(log_of(file, 1)["talker"]) == 9
+
+
 def test_computing_takes_time(mapfile, log_of) -> None:
     log = log_of(mapfile("talker", "echo"), 2, "--factor", "3")
     times_ns = [int(line.split()[-1]) for line in log["talker"]]

@@ -42,6 +42,12 @@ bool has_ended(const FileDescriptor & pidfd) noexcept {
 Timekeeper::Timekeeper(Registry & registry, virtual_time::Page & page)
 : registry_(registry), page_(page) {}
 
+void Timekeeper::Program::become(pid_t process) {
+  pid = process;
+  pidfd = open_pidfd(process);
+  threads.emplace(process);
+}
+
 void Timekeeper::run() {
   while (!is_over_) {
     take_commands();
@@ -101,10 +107,8 @@ void Timekeeper::obey(const Command & command) {
     case Command::Kind::start: {
       Program & program = programs_[command.rank];
       program.name = command.name;
-      program.pid = command.pid;
+      program.become(command.pid);
       program.started_ns = monotonic_ns();
-      program.pidfd = open_pidfd(command.pid);
-      program.threads.emplace(command.pid);
       program.state = Program::State::starting;
       break;
     }
@@ -128,9 +132,12 @@ void Timekeeper::await_join(uint32_t rank, Program & program) {
   Seat * joining = nullptr;
   for_each_seat([&](Seat & seat) {
     const bool waits = seat.state.load(std::memory_order_acquire) == seat_waiting;
-    joining = waits && seat.rank == rank && seat.pid == program.pid ? &seat : joining;
+    joining = waits && seat.rank == rank ? &seat : joining;
   });
   if (joining != nullptr) {
+    if (joining->pid != program.pid) {  // a shell has started it
+      program.become(joining->pid);
+    }
     program.state = Program::State::joined;
     let_go(*joining);
   } else if (has_ended(program.pidfd)) {

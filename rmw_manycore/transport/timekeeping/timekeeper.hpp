@@ -1,10 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <chrono>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "platform/file_descriptor.hpp"
 #include "platform/process_threads.hpp"
@@ -42,6 +43,8 @@ private:
     int64_t started_ns = 0;  ///< CLOCK_MONOTONIC
     FileDescriptor pidfd;
     std::optional<ProcessThreads> threads;
+
+    void become(pid_t process);
   };
 
   /// The threads of a process that wait for the timekeeper, and those that it let go on.
