@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
+from statistics import median
 
 from rmw_manycore_py.profile.model import Callback, Output, Profile
 
@@ -40,6 +41,26 @@ def rates_of_topics(profile: Profile) -> dict[str, float]:
         if one.kind == "subscription" and one.rate_hz:
             rates[one.trigger] = max(one.rate_hz, rates.get(one.trigger, 0.0))
     return rates
+
+
+def heard_shares(profile: Profile) -> dict[str, float]:
+    """Return which share of each topic's messages its median reader got.
+
+    What is published while an application starts reaches few readers.
+    """
+    read: dict[str, list[float]] = defaultdict(list)
+    for one in profile.callbacks:
+        if one.kind == "subscription" and one.rate_hz:
+            read[one.trigger].append(one.rate_hz)
+    published: dict[str, int] = defaultdict(int)
+    for publisher in profile.publishers:
+        published[publisher.topic] += publisher.publications or 0
+    span_s = (profile.duration_ns or 0) / 1e9
+    return {
+        topic: min(median(rates) * span_s / published[topic], 1.0)
+        for topic, rates in read.items()
+        if published[topic] and span_s
+    }
 
 
 def _missing(profile: Profile) -> Iterator[tuple[int, int]]:

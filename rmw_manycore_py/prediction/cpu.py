@@ -50,6 +50,11 @@ class Task:
         )
 
     @property
+    def has_idle_cpu(self) -> bool:
+        """Whether it would run at once."""
+        return any(cpu.current is None for cpu in self.cpus)
+
+    @property
     def is_demanding(self) -> bool:
         """Whether it has not had its demand."""
         return self.then is not None

@@ -138,7 +138,10 @@ class ExecutorThread:
 
     def woken(self, _: object) -> None:
         """Go on after a wait, as soon as a CPU is free."""
-        self.task.run(0.0, self._after_wait)
+        if self.task.has_idle_cpu:
+            self._after_wait()
+        else:
+            self.task.run(0.0, self._after_wait)
 
     def _after_wait(self) -> None:
         self.log.add(self.env.now, Kind.WAIT_END, number=round(self.task.used_ns), value=1)

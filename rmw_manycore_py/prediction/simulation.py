@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections import defaultdict
 from dataclasses import dataclass, field
 
@@ -13,7 +14,7 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.platform.smem import DEFAULT_DEPTH
 from rmw_manycore_py.platform.topology import RECEIVE_THREAD_CORE, Core
 from rmw_manycore_py.prediction.application import Application, ExecutorPlan, period_of
-from rmw_manycore_py.prediction.attribution import rates_of_topics
+from rmw_manycore_py.prediction.attribution import heard_shares, rates_of_topics
 from rmw_manycore_py.prediction.cpu import Cpu, Task
 from rmw_manycore_py.prediction.draws import Blocks, Quantiles, samples
 from rmw_manycore_py.prediction.events import EventLog
@@ -93,8 +94,14 @@ class Simulation:
         return np.random.default_rng([self._seed, *keys])
 
     def run(self, duration_s: float) -> None:
-        """Run for some time."""
-        self.env.run(until=duration_s * 1e9)
+        """Run for some time; all messages are kept, so that looking for garbage finds none."""
+        was_enabled = gc.isenabled()
+        gc.disable()
+        try:
+            self.env.run(until=duration_s * 1e9)
+        finally:
+            if was_enabled:
+                gc.enable()
 
     def _sample(self, _: object) -> None:
         """Record CPU time and held messages, as the tracer does from time to time."""
@@ -133,8 +140,7 @@ class Simulation:
         return tuple(map(self._cpu, sorted(site.host_cpus or known)))
 
     def _wake_ns(self, task: Task) -> float:
-        is_idle = any(cpu.current is None for cpu in task.cpus)
-        return self.target.ns("wake_us" if is_idle else "wake_busy_us")
+        return self.target.ns("wake_us" if task.has_idle_cpu else "wake_busy_us")
 
     def _processes(self) -> list[Placed]:
         found = []
@@ -275,11 +281,12 @@ class Simulation:
     def _add_outside_publications(self) -> None:
         placed = self._process_of_node()
         span_ns = self.profile.duration_ns
+        heard = heard_shares(self.profile)
         for index, one in enumerate(self.profile.publishers):
             few = _FEW * (one.publications or 0)
             if not span_ns or not one.outside_callbacks or one.outside_callbacks <= few:
                 continue
-            rate_hz = one.outside_callbacks * 1e9 / span_ns
+            rate_hz = one.outside_callbacks * 1e9 / span_ns * heard.get(one.topic, 1.0)
             log = EventLog.new(False) if one.node is None else placed[one.node].other
             happen = publication(self.env, self.delivery, self.publishers[index], log)
             source = Source(self.env, self._at_rate(one.interval_ns, rate_hz, 5, index), happen)

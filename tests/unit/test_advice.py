@@ -27,7 +27,7 @@ CALL = re.compile(
 )
 QUOTE = re.compile(r"[`'\"(]$")
 # Names of programs, without what a call of them needs.
-NOUNS = {"manycore run", "manycore up", "manycore interface build"}
+NOUNS = {"manycore run", "manycore up", "manycore interface build", "manycore advise"}
 PROSE = re.compile(
     r"manycore view|manycore create; do not edit|written by manycore create|by manycore trace save|"
     r"of manycore trace save|what manycore trace save|# manycore trace |# With manycore run|"

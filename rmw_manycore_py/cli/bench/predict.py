@@ -91,7 +91,7 @@ def command(
             plan = Plan(mapfile, directory, mappings, repetitions, duration_s, seed)
             found[plan.name] = compared(plan, status.update)
         chains = reported_chains(report, seed) if report else []
-        queueing = queueing_of(load(parts[0]), load(parts[1]), _PARTS_S, seed) if parts else None
+        queueing = _parts(*parts, seed) if parts else None
     rows = {name: _row(of) for name, of in found.items()}
     if as_json:
         print_json(
@@ -109,6 +109,10 @@ def command(
         _show_report(chains)
     if queueing:
         _show_parts(queueing)
+
+
+def _parts(first: Path, second: Path, seed: int) -> Queueing:
+    return queueing_of(load(first), load(second), _PARTS_S, seed)
 
 
 def _row(mappings: Sequence[Compared]) -> dict[str, Any]:
