@@ -56,6 +56,7 @@ _LATENCY, _LATENCY_MAX, _STATE = _INDEX["latency_ns"], _INDEX["latency_max_ns"],
 _BUSY, _LOAD = _INDEX["busy_ns"], _INDEX["load_ppm"]
 _WINDOW, _WINDOW_BUSY = _INDEX["window_ns"], _INDEX["window_busy_ns"]
 _WINDOW_NS = 1_000_000_000
+_MAX_LATENCY_NS = 3600 * 1_000_000_000
 _GIDS = 4  # messages of earlier publishers may still be in flight
 _GID_BYTES = 16
 # Publishers forwarded last, each with the sequence number of its last message.
@@ -106,7 +107,7 @@ class Row:
         words = self._words
         words[0] += 1
         words[1] += size
-        if latency_ns > 0:  # negative if the clocks of two hosts disagree
+        if 0 < latency_ns < _MAX_LATENCY_NS:  # otherwise the clocks of two hosts disagree
             words[_LATENCY] += latency_ns
             if latency_ns > words[_LATENCY_MAX]:
                 words[_LATENCY_MAX] = latency_ns

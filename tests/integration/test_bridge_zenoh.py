@@ -110,7 +110,6 @@ def test_a_late_subscriber_outside_gets_what_was_latched(zenoh) -> None:
     zenoh.run(zenoh.route("outward", "/map"))
     zenoh.inside(say, "/map", LATCHED, None, "older", "old", "new").wait_for("^said$")
     wait_until(lambda: zenoh.row("outward", "/map").get("messages", 0) >= 2, "they have crossed")
-    zenoh.outside(sdk_hear, "/map", ":1:,2:,:,:,,").wait_for("^heard new$")  # asks for one
     late = zenoh.outside_of_domain(hear_latched, key(zenoh, "map"), 2)
     late.wait_for("^heard old$")
     late.wait_for("^heard new$")

@@ -32,9 +32,11 @@ def unpack(data: bytes) -> Attachment | None:
     """Return what an attachment says; None if it has an unknown format."""
     if len(data) == _NUMBERS.size:
         number, sent_ns, length, gid = _NUMBERS.unpack(data)
-        return Attachment(number, sent_ns, gid) if length == _GID_BYTES else None
+        is_known = length == _GID_BYTES and min(number, sent_ns) >= 0
+        return Attachment(number, sent_ns, gid) if is_known else None
     if len(data) == _LABELLED.size:
         first, number, second, sent_ns, third, length, gid = _LABELLED.unpack(data)
-        if (first, second, third) == _LABELS and length == _GID_BYTES:
+        is_known = (first, second, third) == _LABELS and length == _GID_BYTES
+        if is_known and min(number, sent_ns) >= 0:
             return Attachment(number, sent_ns, gid, is_old=True)
     return None

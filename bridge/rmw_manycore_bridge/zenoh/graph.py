@@ -130,11 +130,11 @@ class Graph:
                 return
         self._changed()
 
-    def say_once(self, problem: str, example: str = "") -> None:
+    def say_once(self, problem: str, example: str) -> None:
         """Print a problem when it first occurs."""
         if problem not in self._said:
             self._said.add(problem)
-            say(f"{problem}: {example}" if example else problem)
+            say(f"{problem}: {example!a}")  # it may contain control characters
 
     def close(self) -> None:
         """Stop watching; the session withdraws all tokens."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -12,6 +13,7 @@ GRAPH = "@ros2_lv"
 # Node, publisher, subscription (of messages), server, client (of a service).
 Kind = Literal["NN", "MP", "MS", "SS", "SC"]
 _SLASH = "%"
+_TYPE = re.compile(r"[a-z]\w*::(msg|srv|action)::dds_::[A-Z]\w*_", re.ASCII)
 _NODE_PARTS, _ENDPOINT_PARTS = 9, 13  # newer releases may append more
 
 
@@ -101,13 +103,15 @@ def parse_token(text: str) -> Token:
         raise TokenError(f"expected {GRAPH} and at least {_NODE_PARTS - 1} parts more")
     kind = next((known for known in get_args(Kind) if known == parts[5]), None)
     if kind is None:
-        raise TokenError(f"expected one of {', '.join(get_args(Kind))}, found {parts[5]}")
+        raise TokenError(f"expected one of {', '.join(get_args(Kind))} as the 6th part")
     if kind != "NN" and len(parts) < _ENDPOINT_PARTS:
         raise TokenError(f"expected at least {_ENDPOINT_PARTS} parts, found {len(parts)}")
     enclave, namespace, node = map(demangled, parts[6:9])
     name = type_name = type_hash = qos = ""
     if kind != "NN":
         name, type_name, type_hash, qos = parts[9:13]
+        if not _TYPE.fullmatch(type_name):
+            raise TokenError("expected a type such as std_msgs::msg::dds_::String_")
     try:
         numbers = int(parts[1]), int(parts[3]), int(parts[4])
     except ValueError as error:

@@ -71,6 +71,8 @@ class Zenoh(Outside):
             scout.close()
             scout = None
         if tokens := self._graph.endpoints("MP", route.outside):
+            if scout is not None and scout.is_in_graph:
+                del self._scouts[_name(route)]  # the tokens tell when the publishers are gone
             return [Endpoint(self._type_of(token), self._qos_of(token)) for token in tokens]
         if scout is None and is_wanted:
             self._scouts[_name(route)] = self._scout(route)
@@ -93,7 +95,7 @@ class Zenoh(Outside):
         """Subscribe to a topic; go on with a scout, which has the first messages already."""
         made = self._scouts.get(_name(route))
         if made is not None and self._graph.endpoints("MP", route.outside):
-            del self._scouts[_name(route)]  # the tokens tell when the publishers are gone
+            del self._scouts[_name(route)]  # as above
         if made is not None and qos.durability == "transient_local":
             made.close()  # it has no history
             made = None
@@ -182,8 +184,8 @@ class Zenoh(Outside):
     def _qos_of(self, token: Token) -> Qos:
         try:
             return qos_text.decode(token.qos)
-        except ValueError as error:
-            self._graph.say_once(f"QoS {token.qos} of {token.full_node_name}: {error}")
+        except ValueError:
+            self._graph.say_once("unknown QoS in the graph, taken as the default", token.text)
             return Qos()
 
 

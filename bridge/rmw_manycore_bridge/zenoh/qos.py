@@ -10,6 +10,7 @@ _TRANSIENT_LOCAL = "1"
 _KEEP_ALL = "2"
 _BY_TOPIC = "3"
 _DEFAULT_DEPTH = 42
+_MAX_DEPTH = 1 << 20  # of the platform
 _NS_PER_S = 1_000_000_000
 _INFINITE_NS = 9223372036 * _NS_PER_S + 854775807
 
@@ -51,7 +52,7 @@ def decode(text: str) -> Qos:
         reliability="best_effort" if reliability == _BEST_EFFORT else "reliable",
         durability="transient_local" if durability == _TRANSIENT_LOCAL else "volatile",
         history="keep_last",  # messages of keep_all are kept up to the default depth
-        depth=max(int(depth or _DEFAULT_DEPTH), 1),
+        depth=min(max(int(depth or _DEFAULT_DEPTH), 1), _MAX_DEPTH),
         deadline_ns=_ns(deadline),
         lifespan_ns=_ns(lifespan),
         liveliness="manual_by_topic" if by == _BY_TOPIC else "automatic",

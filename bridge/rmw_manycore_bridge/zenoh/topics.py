@@ -27,6 +27,7 @@ _OLD_PEER = (
     "messages have the attachment of rmw_zenoh before 0.2.4: they are passed on, but it cannot "
     "read those of the bridge"
 )
+_OTHER_TYPE = "messages of another type are dropped"
 _NO_NUMBERS = "messages have no attachment of rmw_zenoh: lost ones cannot be counted"
 
 
@@ -93,7 +94,7 @@ class ZenohSubscription:
         if sample.kind != zenoh.SampleKind.PUT:
             return
         if str(sample.key_expr) != self._key:
-            self._say_once(f"messages of another type are dropped: {sample.key_expr}")
+            self._say_once(f"{_OTHER_TYPE}: {str(sample.key_expr)!a}", _OTHER_TYPE)
             return
         message = self._message_of(sample)
         if self._is_reliable:
@@ -119,9 +120,9 @@ class ZenohSubscription:
             self._say_once(_OLD_PEER)
         return _Message(found.gid, found.number, found.sent_ns, data)
 
-    def _say_once(self, text: str) -> None:
-        if text not in self._said:
-            self._said.add(text)
+    def _say_once(self, text: str, problem: str = "") -> None:
+        if (problem or text) not in self._said:
+            self._said.add(problem or text)
             say(f"{self._key.split('/', 1)[1].rsplit('/', 2)[0]}: {text}")
 
     def has_data(self) -> bool:

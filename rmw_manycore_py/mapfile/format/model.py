@@ -183,7 +183,8 @@ class RouteSection(Section):
     timeout: Timeout | None = Field(default=None, description="Timeout of a request in seconds")
 
 
-Locator = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_-]*/\S+$")]
+_LINKS = "tcp|udp|tls|quic|ws|unixsock-stream"  # zenoh refuses to start with another one
+Locator = Annotated[str, StringConstraints(pattern=rf"^({_LINKS})/\S+$")]
 
 
 class OutsideSection(Section):

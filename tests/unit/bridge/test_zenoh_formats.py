@@ -77,7 +77,9 @@ def test_the_gid_is_the_hash_of_the_token() -> None:
     ("text", "problem"),
     [
         ("@ros2_lv/0/abc", "at least 8 parts more"),
-        ("@ros2_lv/0/a/0/1/XX/%/%/n", "one of NN, MP, MS, SS, SC, found XX"),
+        ("@ros2_lv/0/a/0/1/XX/%/%/n", "one of NN, MP, MS, SS, SC as the 6th part"),
+        ("@ros2_lv/0/a/0/1/MP/%/%/n/%t/type/hash/qos", "a type such as std_msgs::msg"),
+        ("@ros2_lv/0/a/0/1/MP/%/%/n/%t/..::..::dds_::x_/hash/qos", "a type such as"),
         ("@ros2_lv/0/a/0/1/MP/%/%/n/%t/type", "at least 13 parts, found 11"),
         ("@ros2_lv/0/a/b/1/NN/%/%/n", "numbers of domain, node and entity"),
     ],
@@ -105,6 +107,7 @@ def test_qos(qos: Qos, text: str) -> None:
 
 def test_qos_as_peers_may_write_it() -> None:
     assert encode(Qos(history="keep_all")) == "::2,:,:,:,,"
+    assert decode(f"::,{10**30}:,:,:,,").depth == 1 << 20
     infinite = "9223372036,854775807"
     assert policies_of(decode(f"1:2:1,10:{infinite}:{infinite}:1,{infinite}")) == policies_of(Qos())
     for text in ("", "::,10:,:,", "7::,10:,:,:,,", "::,x:,:,:,,"):
@@ -116,7 +119,8 @@ def test_attachments() -> None:
     assert pack(7, 123456789, GID).hex() == ATTACHMENT
     assert unpack(bytes.fromhex(ATTACHMENT)) == Attachment(7, 123456789, GID)
     assert unpack(bytes.fromhex(OLD_ATTACHMENT)) == Attachment(7, 123456789, GID, is_old=True)
-    for data in (b"", bytes(33), bytes(77), bytes.fromhex(ATTACHMENT)[:-1]):
+    negative = pack(-1, 0, GID), pack(0, -1, GID)
+    for data in (b"", bytes(33), bytes(77), bytes.fromhex(ATTACHMENT)[:-1], *negative):
         assert unpack(data) is None
 
 
