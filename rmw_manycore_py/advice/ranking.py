@@ -70,14 +70,19 @@ def ranked(
     trial: Trial,
     report: Callable[[str], None] = lambda _: None,
 ) -> list[Ranked]:
-    """Return the candidates, the best first; of equal ones, the first is first."""
+    """Return the candidates, the best first."""
     predictions = []
     for number, one in enumerate(candidates, start=1):
         report(f"simulating mapping {number} of {len(candidates)}: {one.name}")
         predictions.append(trial.predict(one.placement))
     scores = _scores(problem, candidates, predictions, trial.objective)
     found = map(Ranked, candidates, predictions, scores)
-    return sorted(found, key=lambda one: one.score)
+    return sorted(found, key=lambda one: (one.score, _crossing(problem, one.candidate)))
+
+
+def _crossing(problem: Problem, candidate: Candidate) -> float:
+    """Return the messages between clusters, which decide where scores are equal."""
+    return Traffic.of(problem.flows, candidate.clusters).messages_per_s
 
 
 def _scores(
