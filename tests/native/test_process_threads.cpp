@@ -19,9 +19,10 @@ using namespace manycore;
 namespace {
 
 /// A child whose main thread and a second one each do something until they are killed.
-class Child {
+class TwoThreads {
 public:
-  Child(const std::function<void()> & first, const std::function<void()> & second) : pid_(fork()) {
+  TwoThreads(const std::function<void()> & first, const std::function<void()> & second)
+  : pid_(fork()) {
     if (pid_ == 0) {
       std::thread other(second);
       first();
@@ -29,12 +30,12 @@ public:
       _exit(0);
     }
   }
-  ~Child() {
+  ~TwoThreads() {
     kill(pid_, SIGKILL);
     waitpid(pid_, nullptr, 0);
   }
-  Child(const Child &) = delete;
-  Child & operator=(const Child &) = delete;
+  TwoThreads(const TwoThreads &) = delete;
+  TwoThreads & operator=(const TwoThreads &) = delete;
   pid_t pid() const { return pid_; }
 
 private:
@@ -65,13 +66,13 @@ ProcessThreads::Look look_until(pid_t pid, Predicate predicate) {
 }  // namespace
 
 TEST_CASE("threads that wait for each other sleep") {
-  const Child child(wait_for_another, wait_for_another);
+  const TwoThreads child(wait_for_another, wait_for_another);
   CHECK(look_until(child.pid(), [](const auto & look) { return look.asleep; }).tid == 0);
 }
 
 TEST_CASE(
   "a thread that sleeps by the clock is awake, and named, unless it is known to be blocked") {
-  const Child child(wait_for_another, sleep_long);
+  const TwoThreads child(wait_for_another, sleep_long);
   const auto sleeps = [](const auto & look) { return look.doing == "sleeps by the wall clock"; };
   const ProcessThreads::Look look = look_until(child.pid(), sleeps);
   CHECK(!look.asleep);
@@ -81,7 +82,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a thread that computes is awake, though another one sleeps") {
-  const Child child(compute, wait_for_another);
+  const TwoThreads child(compute, wait_for_another);
   ProcessThreads threads(child.pid());
   for (int i = 0; i < 1000; ++i) {
     REQUIRE(!threads.look({}, {}).asleep);

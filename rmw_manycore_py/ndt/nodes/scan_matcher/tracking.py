@@ -9,7 +9,7 @@ refused scans (docs/design/ndt_trust.md).
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
@@ -25,10 +25,8 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
 from rmw_manycore_py.ndt.trust.judge import PoseJudge, Verdict
 from rmw_manycore_py.ndt.trust.last_pose import LastPose
-from rmw_manycore_py.ndt.trust.look_along import LookAlong
 from rmw_manycore_py.ndt.trust.motion import Believed
 from rmw_manycore_py.ndt.trust.recovery import Recovery, Step
-from rmw_manycore_py.ndt.trust.repeats import RepeatedScans
 
 OTHER_M, OTHER_RAD = 0.3, np.radians(2.0)  # minimum distance of a second start from the guess
 VAIN_LOOKS = 5  # second looks in a row without result, after which none is taken
@@ -122,8 +120,6 @@ class RobustTracking:
         path = Path(own.last_pose_path).expanduser()
         self._last_pose = LastPose(path) if own.last_pose_path else None
         self._second_looks = self._vain_looks = 0
-        self._repeats = RepeatedScans()
-        self._along = LookAlong(matcher, self._judge)
         self.was_activated = False
         left = self._last_pose.read(time.time(), MAX_LEFT_S) if self._last_pose else None
         if left is not None:
@@ -143,16 +139,9 @@ class RobustTracking:
                 again = self._looked_again(scan, alignment)
             if again is not None:
                 alignment, verdict = again
-        found = self._along.look(scan.stamp_s, scan.points, scan.guess, verdict)
-        if found is None:
-            alignment = replace(alignment, T_map_sensor=verdict.corrected(alignment.T_map_sensor))
-        else:
-            alignment, verdict = found
-        if repeated := self._repeats.why_refused(scan.points, verdict.expected):
-            verdict = replace(verdict, why=repeated)
         self._report(alignment, verdict, report)
         if verdict.is_believed:
-            self._believe(scan, alignment, 0 if found is None else self._along.stood_out)
+            self._believe(scan, alignment)
         else:
             expected = scan.guess if verdict.expected is None else verdict.expected.poses[0]
             self._recovery.refused(scan.stamp_s, scan.points, scan.guess, expected)
@@ -231,8 +220,8 @@ class RobustTracking:
             verdict = self._judge.judge(scan.stamp_s, alignment, scan.guess)
         return alignment, verdict
 
-    def _believe(self, scan: ScanAt, alignment: Alignment, stood_out: int) -> None:
-        self._judge.believe(scan.stamp_s, alignment, scan.guess, stood_out=stood_out)
+    def _believe(self, scan: ScanAt, alignment: Alignment) -> None:
+        self._judge.believe(scan.stamp_s, alignment, scan.guess)
         self._recovery.believed()
         self._vain_looks = 0
         if self._last_pose is not None:

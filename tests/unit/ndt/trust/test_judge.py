@@ -10,7 +10,7 @@ import pytest
 
 from rmw_manycore_py.ndt import Alignment, MatcherOptions
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
-from rmw_manycore_py.ndt.trust.judge import WEAK_DRIFT, WEAK_M, PoseJudge, Verdict
+from rmw_manycore_py.ndt.trust.judge import WEAK_M, PoseJudge, Verdict
 from rmw_manycore_py.ndt.trust.motion import Believed, MotionModel
 
 pytestmark = pytest.mark.unit
@@ -146,10 +146,7 @@ def test_guesses_carry_over_a_gap_unless_they_jump():
     judge, stamp_s, x = driven()
     later_s, on = stamp_s + 0.9, at(x + SPEED_M_S * 0.9)
     assert judge.judge(later_s, aligned(on), on).is_believed
-    stayed = judge.judge(later_s, aligned(on), at(x))
-    assert stayed.is_believed
-    assert not stayed.is_sure
-    assert stayed.covariance(np.eye(6))[0, 0] > (0.5 * SPEED_M_S * 0.9) ** 2
+    assert "implausible" in judge.judge(later_s, aligned(on), at(x)).why
     jumped = at(x + SPEED_M_S * 0.9 + 20.0)
     assert "implausible" in judge.judge(later_s, aligned(jumped), jumped).why
 
@@ -189,37 +186,8 @@ def test_the_covariance_is_wide_where_the_pose_is_unknown():
     judge, stamp_s, x = driven()
     tunnel = replace(aligned(at(x)), xy_spread_m2=np.diag([0.4, 0.01]))
     along = judge.judge(stamp_s, tunnel, at(x)).covariance(sure)
-    assert along[0, 0] == pytest.approx((WEAK_M + WEAK_DRIFT * 1.5) ** 2, rel=0.01)
+    assert along[0, 0] == pytest.approx(WEAK_M**2, rel=0.01)
     assert along[1, 1] == pytest.approx(0.02)
-
-
-def test_along_a_tunnel_the_covariance_grows_until_features_return():
-    judge, stamp_s, x = driven()
-    before_m = 0.0
-    for _ in range(100):
-        tunnel = replace(aligned(at(x - 0.4)), xy_spread_m2=np.diag([0.4, 0.01]))
-        verdict = judge.judge(stamp_s, tunnel, at(x))
-        assert verdict.corrected(tunnel.T_map_sensor)[0, 3] == pytest.approx(x)
-        assert verdict.along.deviation_m > before_m
-        before_m = verdict.along.deviation_m
-        judge.believe(stamp_s, replace(tunnel, T_map_sensor=at(x)), at(x))
-        stamp_s, x = stamp_s + PERIOD_S, x + SPEED_M_S * PERIOD_S
-    assert before_m == pytest.approx(WEAK_M + WEAK_DRIFT * 150.0, rel=0.1)
-    out = aligned(at(x - 7.0))
-    assert not judge.judge(stamp_s, out, at(x)).is_sure
-    assert judge.judge(stamp_s, out, at(x), stood_out=1).along.is_open
-    assert judge.judge(stamp_s, out, at(x), stood_out=2).along is None
-    judge.believe(stamp_s, out, at(x), stood_out=2)
-    on = at(x - 7.0 + SPEED_M_S * PERIOD_S)
-    assert judge.judge(stamp_s + PERIOD_S, aligned(on), on).is_sure
-
-
-def test_guesses_that_turn_around_have_jumped():
-    judge, stamp_s, x = driven()
-    around = at(x, yaw=np.pi)
-    assert judge.judge(stamp_s, aligned(at(x)), around).expected.by_guess is None
-    assert "implausible" in judge.judge(stamp_s, aligned(around), around).why
-    assert "implausible" in judge.judge(stamp_s + 2.0, aligned(around), around).why
 
 
 def test_the_motion_leads_along_the_arc_that_a_vehicle_turns_on():
