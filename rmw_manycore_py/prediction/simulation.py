@@ -240,7 +240,7 @@ class Simulation:
         self.receive_threads[cluster] = ReceiveThread(
             self.env,
             cluster,
-            Task.of(cpus, self.sites.receive_scheduling),
+            Task(cpus),
             self.target.ns("receive_us") / self.target.speed,
             self._wake_ns,
             EventLog.new(self._is_traced),

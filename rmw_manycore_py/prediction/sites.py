@@ -33,7 +33,6 @@ class Sites:
     :ivar rings: bytes of each topic DSM of fixed size, by topic.
     :ivar transferred: topics that are copied to other clusters before their readers are notified.
     :ivar memory: of each cluster when nodes have started, if it is known.
-    :ivar receive_scheduling: of receive threads; they have that of what starts the nodes.
     """
 
     nodes: Mapping[str, Site]
@@ -43,15 +42,11 @@ class Sites:
     transferred: frozenset[str] = frozenset()
     memory: tuple[ClusterMemory, ...] = ()
     bridge: Mapping[str, Site] = field(default_factory=dict)  # by direction
-    receive_scheduling: Scheduling | None = None
 
     def scheduled(self, scheduling: Scheduling) -> Sites:
-        """Return the places with everything scheduled like this."""
-        return replace(
-            self,
-            nodes={name: replace(one, scheduling=scheduling) for name, one in self.nodes.items()},
-            receive_scheduling=scheduling,
-        )
+        """Return the places with all nodes scheduled like this; receive threads never are."""
+        nodes = {name: replace(one, scheduling=scheduling) for name, one in self.nodes.items()}
+        return replace(self, nodes=nodes)
 
     def of(self, node: str) -> Site | None:
         """Return the place of a node or of a bridge's node."""

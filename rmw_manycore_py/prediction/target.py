@@ -42,7 +42,6 @@ class Target:
     dispatch_us: float = _parameter(0.0, "from there to a callback, where the profile lacks it")
     publish_us: float = _parameter(0.0, "of a publish before readers see it, where it lacks it")
     receive_us: float = _parameter(0.0, "of a receive thread per eMCOS message")
-    copy_ns_per_byte: float = _parameter(0.0, "of a take per byte, where the profile lacks it")
     switch_us: float = _parameter(0.0, "of a change of threads")
     slice_us: float = _parameter(3000.0, "for which a thread keeps a CPU that others want")
     message_us: float = _parameter(0.0, "of an eMCOS message between clusters")
@@ -81,10 +80,10 @@ PARAMETERS: dict[str, str] = {
 }
 _POSITIVE = frozenset({"cpu_count", "speed", "slice_us", "bytes_per_us"})
 
-_OVERHEADS = ("dispatch_us", "publish_us", "receive_us", "copy_ns_per_byte", "switch_us")
+_OVERHEADS = ("dispatch_us", "publish_us", "receive_us", "switch_us")
 _WAKING = ("wake_us", "wake_busy_us", "slice_us")
-# Measured on a machine with two CPUs: waking, and copying. The others are assumed.
-_MEASURED_HERE = ("wake_us", "wake_busy_us", "copy_ns_per_byte")
+# Waking was measured on a machine with two CPUs. The others are assumed.
+_MEASURED_HERE = ("wake_us", "wake_busy_us")
 _ASSUMED = ("dispatch_us", "publish_us", "receive_us", "switch_us", "slice_us")
 _DEFAULTS: dict[str, float] = {
     "wake_us": 20.0,
@@ -92,7 +91,6 @@ _DEFAULTS: dict[str, float] = {
     "dispatch_us": 100.0,
     "publish_us": 15.0,
     "receive_us": 10.0,
-    "copy_ns_per_byte": 0.06,
     "switch_us": 2.0,
     "slice_us": 2800.0,
 }
