@@ -48,11 +48,6 @@ class VoxelMap:
     ) -> NDArray[np.float32]:
         """Return of each point (N, 3) the best voxel's score (N,), NaN where it sees none."""
 
-    def point_evidence(
-        self, points: NDArray[np.float32], pose: NDArray[np.float64], outlier_ratio: float
-    ) -> NDArray[np.float32]:
-        """Return (N, 4): score, height in the column, known columns around, 1 behind a surface."""
-
     @staticmethod
     def attach(shared_path: str) -> VoxelMap:
         """Return the map that another process named by `shared_path`; it outlives that process."""

@@ -16,11 +16,10 @@ import numpy as np
 from rmw_manycore_py.bench.ndt.contenders import usable
 from rmw_manycore_py.bench.ndt.trust_cases import Case, Shares, cases_of, looked_again, searched
 from rmw_manycore_py.bench.ndt.trust_helpers import Helpers, TrustHelpers
-from rmw_manycore_py.bench.ndt.trust_variants import drives
+from rmw_manycore_py.bench.ndt.trust_worlds import drives
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.ndt.geometry import poses
-from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE
 from rmw_manycore_py.ndt.trust.score_level import FIRST_SHARE, ScoreLevel
 from rmw_manycore_py.ndt.trust.search import Found, Region
 
@@ -32,7 +31,6 @@ LET_OUT, LET_OUT_AT_START = "wrong poses let out at all", "wrong poses let out a
 REFUSED_AT_START = "right poses refused at a start"
 SHARES = "share of the drive's median, chosen without the drive"
 FIRST_SHARES = "share of the map's score for a first pose, chosen without the drive"
-EXPLAINED_SHARES = "share of the usual score for an explained score, chosen without the drive"
 OURS, AUTOWARE = "rmw_manycore", "as Autoware"
 AUTOWARE_SCORE = 2.3  # converged_param_nearest_voxel_transformation_likelihood
 SEARCHED, FOUND_WRONG = "right places found by a search", "wrong places found by a search"
@@ -41,7 +39,6 @@ SEARCHES = 8  # per drive
 # different drive: scores of a sparse map vary more along the way. A first pose must fit better than
 # all wrong ones of the other drives, plus a margin.
 LEFT_BELOW, DRIVE_ROOM, MAP_ROOM, FIRST_ROOM = 0.003, 0.07, 0.1, 0.03
-EXPLAINED_ROOM = 0.02
 AROUND_M, GLOBAL_M = 5.0, 20.0
 
 
@@ -98,7 +95,6 @@ def judged(
         _share(REFUSED_AT_START, OURS, refuse_at_start),
         Result(SHARES, OURS, "", tuple(one.of_drive for one in shares.values())),
         Result(FIRST_SHARES, OURS, "", tuple(one.of_first for one in shares.values())),
-        Result(EXPLAINED_SHARES, OURS, "", tuple(one.of_explained for one in shares.values())),
     ]
     for name in cases:
         of_drive = [case for case in wrong if case.drive == name]
@@ -158,20 +154,19 @@ def _is_there(found: Found, case: Case) -> bool:
 def chosen(cases: Sequence[Case]) -> Shares:
     """Choose the shares from the right poses of some drives."""
     right = [case for case in cases if case.is_right]
-    of_map = [case.score / case.own_score for case in right]
+    of_map = [case.alignment.nearest_voxel_likelihood / case.own_score for case in right]
     of_drive = [
-        case.score / float(np.median([b.score for b in case.before]))
+        case.alignment.nearest_voxel_likelihood / float(np.median([b.score for b in case.before]))
         for case in right
         if case.before
     ]
-    wrong = [case for case in cases if case.is_wrong and not case.repeats]
-    fits = [case.alignment.fit / case.own_score for case in wrong]
-    explained = [case.alignment.explained_score / case.own_score for case in wrong]
+    wrong = [
+        case.alignment.fit / case.own_score for case in cases if case.is_wrong and not case.repeats
+    ]
     return Shares(
         float(np.quantile(of_map, LEFT_BELOW)) - MAP_ROOM,
         float(np.quantile(of_drive, LEFT_BELOW)) - DRIVE_ROOM,
-        max(fits, default=FIRST_SHARE - FIRST_ROOM) + FIRST_ROOM,
-        max(explained, default=EXPLAINED_SHARE - EXPLAINED_ROOM) + EXPLAINED_ROOM,
+        max(wrong, default=FIRST_SHARE - FIRST_ROOM) + FIRST_ROOM,
     )
 
 

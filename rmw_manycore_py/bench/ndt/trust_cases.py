@@ -12,8 +12,7 @@ from functools import cache
 
 import numpy as np
 
-from rmw_manycore_py.bench.ndt.trust_variants import drives
-from rmw_manycore_py.bench.ndt.trust_worlds import Drive
+from rmw_manycore_py.bench.ndt.trust_worlds import Drive, drives
 from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Pose, ScanPoints, scan_points
@@ -45,11 +44,10 @@ class Shares:
     of_map: float
     of_drive: float
     of_first: float
-    of_explained: float
 
     def level(self) -> ScoreLevel:
         """Return a level that has learned nothing yet."""
-        return ScoreLevel(self.of_map, self.of_drive, self.of_first, self.of_explained)
+        return ScoreLevel(self.of_map, self.of_drive, self.of_first)
 
 
 @dataclass(frozen=True)
@@ -130,11 +128,6 @@ class Case:
         return self.error_m > WRONG_M or self.error_deg > WRONG_DEG
 
     @property
-    def score(self) -> float:
-        """Return the score that is judged."""
-        return max(self.alignment.nearest_voxel_likelihood, self.alignment.explained_score)
-
-    @property
     def error_m(self) -> float:
         """Return the distance from the truth."""
         return poses.distance_m(self.alignment.T_map_sensor, self.truth)
@@ -150,12 +143,7 @@ class Case:
         judge = PoseJudge(level)
         level.map_changed(self.own_score)
         for one in self.before:
-            seen = replace(
-                self.alignment,
-                T_map_sensor=one.T,
-                nearest_voxel_likelihood=one.score,
-                explained_score=0.0,
-            )
+            seen = replace(self.alignment, T_map_sensor=one.T, nearest_voxel_likelihood=one.score)
             judge.believe(one.stamp_s, seen, one.guess)
         return judge.judge(self.stamp_s, self.alignment, self.guess)
 
@@ -163,18 +151,13 @@ class Case:
 def looked_again(case: Case, shares: Shares) -> Case:
     """Return the case after the second look that the node takes at a refused result."""
     world = world_of(case.drive)
-    scan = world.scan(case.index)
-
-    def explained(found: Alignment) -> Case:
-        return replace(case, alignment=world.matcher.explained(found, scan))
-
     found = world.matcher.second_look(
         case.alignment,
-        scan,
+        world.scan(case.index),
         case.guess,
-        convinces=lambda found: explained(found).judged(shares).is_believed,
+        convinces=lambda found: replace(case, alignment=found).judged(shares).is_believed,
     )
-    return explained(found)
+    return replace(case, alignment=found)
 
 
 def cases_of(name: str, count: int, wanted: int) -> list[Case]:
@@ -188,15 +171,13 @@ def cases_of(name: str, count: int, wanted: int) -> list[Case]:
     scans = {index: world.scan(index) for index in _spread(drive.tested, count)}
     scores: dict[int, float] = {}
     for index, scan in scans.items():
-        likelihood = matcher.score(scan, drive.poses[index]).nearest_voxel_likelihood
-        scores[index] = max(likelihood, matcher.explained_score(scan, drive.poses[index]))
+        scores[index] = matcher.score(scan, drive.poses[index]).nearest_voxel_likelihood
     found: list[Case] = []
     rounds = -(-wanted // len(scans))
     for index, scan in scans.items():
         before = _before(drive, index, scores, generator)
         for guess in _guesses(drive.poses[index], rounds, generator):
             alignment = matcher.align_once(scan, guess, only_pose=True)
-            alignment = matcher.explained(alignment, scan)
             found.append(
                 Case(
                     name,

@@ -114,10 +114,9 @@ class PoseJudge:
         """Continue from a pose that was judged good."""
         self._confirmed += 1
         self.motion.believe(stamp_s, alignment.T_map_sensor, guess)
-        score = max(alignment.nearest_voxel_likelihood, alignment.explained_score)
-        self._recent.append(score)
+        self._recent.append(alignment.nearest_voxel_likelihood)
         if self._confirmed > SURE_AFTER:
-            self.level.learn(score)
+            self.level.learn(alignment.nearest_voxel_likelihood)
 
     def begin_at(self, at: Believed) -> None:
         """Continue from a pose found by a search or left by a previous process.
@@ -133,19 +132,14 @@ class PoseJudge:
             return f"no convergence: {alignment.why}"
         if alignment.share_in_map < MIN_SHARE_IN_MAP:
             return f"only {100 * alignment.share_in_map:.0f} % of the points lie in the map"
-        if not self._is_explained(alignment):
-            if not score > self.level.level:
-                return f"the score {score:.3f} is not above the level {self.level.level:.3f}"
-            if len(self._recent) == DROP_SCORES and score < DROP_SHARE * median(self._recent):
-                return f"the score fell from {median(self._recent):.3f} to {score:.3f}"
-            if expected is None:
-                return self._why_not_first(alignment)
-        implausible = "" if expected is None else expected.why_implausible(alignment.T_map_sensor)
+        if not score > self.level.level:
+            return f"the score {score:.3f} is not above the level {self.level.level:.3f}"
+        if len(self._recent) == DROP_SCORES and score < DROP_SHARE * median(self._recent):
+            return f"the score fell from {median(self._recent):.3f} to {score:.3f}"
+        if expected is None:
+            return self._why_not_first(alignment)
+        implausible = expected.why_implausible(alignment.T_map_sensor)
         return f"the pose is implausible: {implausible}" if implausible else ""
-
-    def _is_explained(self, alignment: Alignment) -> bool:
-        """Return whether a scan fits well apart from foreign points and those beyond the map."""
-        return alignment.explained_score > self.level.of_explained
 
     def _why_not_first(self, alignment: Alignment) -> str:
         if not self._searches or alignment.fit > self.level.of_first:

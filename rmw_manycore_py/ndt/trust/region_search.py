@@ -60,20 +60,15 @@ class RegionSearch:
     def _search(self, voxel_map: VoxelMap, scan: ScanPoints, region: Region) -> Found:
         # Keep the map until the result arrives: the helper attaches to this process's memory.
         paths = voxel_map.shared_paths
-        own_score = voxel_map.own_likelihood
-        return self._helper.call(search_in_map, paths, own_score, self._options, scan, region)
+        return self._helper.call(search_in_map, paths, self._options, scan, region)
 
 
 def search_in_map(
-    shared_paths: list[str],
-    own_score: float,
-    options: MatcherOptions,
-    scan: ScanPoints,
-    region: Region,
+    shared_paths: list[str], options: MatcherOptions, scan: ScanPoints, region: Region
 ) -> Found:
     """Search in the map of another process."""
     only_pose = replace(options, pose_covariance="fixed")
-    voxel_map = VoxelMap.attach(shared_paths, only_pose, own_score)
+    voxel_map = VoxelMap.attach(shared_paths, only_pose, 0.0)
     matcher = SerialMatcher(only_pose)
     matcher.set_map(voxel_map)
     return search(sketcher_of(voxel_map, only_pose), matcher, scan, region)

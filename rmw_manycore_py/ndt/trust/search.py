@@ -79,12 +79,11 @@ class Found:
         if not self.places:
             return "the scan fits nowhere"
         best = self.places[0]
-        if not best.explained_score > level.of_explained:
-            if not region.any_yaw and not best.fit > level.of_first:
-                return f"the best fit {best.fit:.3f} is below {level.of_first:.3f}"
-            score = best.nearest_voxel_likelihood
-            if not score > level.of_map:
-                return f"the best score {score:.3f} is below {level.of_map:.3f}"
+        if not region.any_yaw and not best.fit > level.of_first:
+            return f"the best fit {best.fit:.3f} is below {level.of_first:.3f}"
+        score = best.nearest_voxel_likelihood
+        if not score > level.of_map:
+            return f"the best score {score:.3f} is below {level.of_map:.3f}"
         if self.margin < MARGIN:
             other = self.places[1]
             apart_m = poses.distance_m(best.T_map_sensor, other.T_map_sensor)
@@ -102,8 +101,7 @@ def search(sketcher: Matcher, matcher: Matcher, scan: ScanPoints, region: Region
     tried = [sketcher.align_once(sketch, T, only_pose=True) for T in region.grid()]
     rough = _distinct([one for one in tried if not one.is_degenerate], 0.5 * SAME_M)
     fine = [matcher.align_once(scan, one.T_map_sensor, only_pose=True) for one in rough]
-    places = _distinct([one for one in fine if not one.is_degenerate], SAME_M)
-    return Found(tuple(matcher.explained(place, scan) for place in places[:1]) + tuple(places[1:]))
+    return Found(tuple(_distinct([one for one in fine if not one.is_degenerate], SAME_M)))
 
 
 def _distinct(places: Sequence[Alignment], apart_m: float) -> list[Alignment]:

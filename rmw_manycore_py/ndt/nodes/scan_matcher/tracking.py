@@ -132,7 +132,8 @@ class RobustTracking:
         """Align and judge a scan; retry from the expected pose."""
         if self._recovery.take(self._judge):
             report.warn(f"recovery: {self._recovery.note}")
-        alignment, verdict = self._aligned(scan, scan.guess)
+        alignment = self._matcher.align_once(scan.points, scan.guess, scan.regularization)
+        verdict = self._judged(scan, alignment)
         if not verdict.is_believed:
             again = self._from_expectation(scan, verdict)
             if again is None and self._judge.may_look_again(verdict):
@@ -180,7 +181,8 @@ class RobustTracking:
             if any(_is_near(start, other) for other in tried):
                 continue
             tried.append(start)
-            alignment, verdict = self._aligned(scan, start)
+            alignment = self._matcher.align_once(scan.points, start, scan.regularization)
+            verdict = self._judged(scan, alignment)
             if verdict.is_believed:
                 return alignment, verdict
         return None
@@ -195,30 +197,15 @@ class RobustTracking:
             scan.points,
             scan.guess,
             scan.regularization,
-            convinces=lambda found: self._judged(scan, found)[1].is_believed,
+            convinces=lambda found: self._judged(scan, found).is_believed,
         )
         self._second_looks += alignment.looks > first.looks
-        alignment, verdict = self._judged(scan, alignment)
+        verdict = self._judged(scan, alignment)
         self._vain_looks += not verdict.is_believed
         return (alignment, verdict) if verdict.is_believed else None
 
-    def _aligned(self, scan: ScanAt, start: Pose) -> tuple[Alignment, Verdict]:
-        """Align from a start; if the result is refused, to the finest level alone."""
-        align = self._matcher.align_once
-        alignment, verdict = self._judged(scan, align(scan.points, start, scan.regularization))
-        if verdict.is_believed:
-            return alignment, verdict
-        closer = align(scan.points, start, scan.regularization, is_close=True)
-        judged_closer = self._judged(scan, closer)
-        return judged_closer if judged_closer[1].is_believed else (alignment, verdict)
-
-    def _judged(self, scan: ScanAt, alignment: Alignment) -> tuple[Alignment, Verdict]:
-        """Judge an alignment; if it is refused, again with what may explain its low score."""
-        verdict = self._judge.judge(scan.stamp_s, alignment, scan.guess)
-        if not verdict.is_believed:
-            alignment = self._matcher.explained(alignment, scan.points)
-            verdict = self._judge.judge(scan.stamp_s, alignment, scan.guess)
-        return alignment, verdict
+    def _judged(self, scan: ScanAt, alignment: Alignment) -> Verdict:
+        return self._judge.judge(scan.stamp_s, alignment, scan.guess)
 
     def _believe(self, scan: ScanAt, alignment: Alignment) -> None:
         self._judge.believe(scan.stamp_s, alignment, scan.guess)
@@ -234,7 +221,6 @@ class RobustTracking:
         likelihood = alignment.nearest_voxel_likelihood
         report.value("nearest_voxel_transformation_likelihood", likelihood)
         report.value("score_level", round(verdict.level, 4))
-        report.value("explained_score", round(alignment.explained_score, 4))
         report.value("share_of_points_in_map", round(alignment.share_in_map, 4))
         report.value("is_sure", verdict.is_sure)
         report.value("second_looks", self._second_looks)

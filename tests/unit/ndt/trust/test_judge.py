@@ -85,31 +85,6 @@ def test_a_first_pose_must_fit_well_unless_nothing_can_search():
         assert judge.judge(0.0, aligned(at(0.0), 2.9, 0.9), at(0.0)).is_believed == is_believed
 
 
-def test_a_low_score_may_be_explained_also_of_a_first_pose():
-    judge = PoseJudge()
-    judge.level.map_changed(OWN_SCORE)
-    hidden = aligned(at(0.0), 1.8, 0.5)
-    assert "level" in judge.judge(0.0, hidden, at(0.0)).why
-    for share, is_believed in ((0.9, True), (0.86, False)):
-        explained = replace(hidden, explained_score=share * OWN_SCORE)
-        assert judge.judge(0.0, explained, at(0.0)).is_believed == is_believed
-    judge, stamp_s, x = driven()
-    explained = replace(aligned(at(x), 1.8), explained_score=0.9 * OWN_SCORE)
-    assert judge.judge(stamp_s, explained, at(x)).is_believed
-    elsewhere = replace(explained, T_map_sensor=at(x + 12.0))
-    assert "implausible" in judge.judge(stamp_s, elsewhere, at(x)).why
-
-
-def test_traffic_does_not_lower_the_level():
-    judge, stamp_s, x = driven()
-    before = judge.level.level
-    for _ in range(30):
-        explained = replace(aligned(at(x), 1.8), explained_score=OWN_SCORE)
-        judge.believe(stamp_s, explained, at(x))
-        stamp_s, x = stamp_s + PERIOD_S, x + SPEED_M_S * PERIOD_S
-    assert judge.level.level == before
-
-
 def test_only_a_search_may_replace_a_refused_first_pose():
     for searches in (True, False):
         judge = PoseJudge(searches=searches)
