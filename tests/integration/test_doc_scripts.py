@@ -68,7 +68,7 @@ MARKS = {
     "tutorials/laptop_to_chip.md": pytest.mark.long,
     "tutorials/offload_ndt.md": pytest.mark.stress,
     "tutorials/own_stack.md": pytest.mark.stress,
-    "tutorials/which_mapping.md": pytest.mark.long,
+    "tutorials/which_mapping.md": pytest.mark.stress,
 }
 PAGES = [pytest.param(page, marks=MARKS.get(page, ())) for page in sorted(SHOWN)]
 
