@@ -86,9 +86,11 @@ def state_of(manycore: Run, node: str) -> str:
     return next(str(row["state"]) for run in runs for row in run["nodes"] if row["name"] == node)
 
 
-def test_a_platform_that_is_running_already_is_stopped(up, follow) -> None:
+def test_a_platform_that_is_running_already_is_stopped(up, follow, manycore, tmp_path) -> None:
     up()
-    follow(up(status=1), "manycore stop")
+    other = tmp_path / "other.yaml"
+    other.write_text(MAPFILE)
+    follow(manycore("up", "-d", other, status=1), "manycore stop")
     up()
 
 

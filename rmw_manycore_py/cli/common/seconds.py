@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import Any
 
@@ -15,7 +16,7 @@ _UNIT_S = {"ms": 0.001, "s": 1.0, "m": 60.0, "h": 3600.0}
 
 
 class Seconds(FiniteRange):
-    """A positive number of seconds, or numbers with units, as in 90s, 5m, 1h30m."""
+    """A positive number of seconds, or numbers with units, as in 90s, 5m, 1h30m; inf: no end."""
 
     name = "seconds"
 
@@ -26,6 +27,8 @@ class Seconds(FiniteRange):
         self, value: Any, param: click.Parameter | None, context: click.Context | None
     ) -> float:
         """Return the seconds, or fail with a usage error."""
+        if value in ("inf", math.inf):
+            return math.inf
         parts = _PART.findall(value) if isinstance(value, str) else []
         if parts and "".join(map("".join, parts)) == value:
             value = sum(float(number) * _UNIT_S[unit] for number, unit in parts)

@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.cli.common.seconds import Seconds
+from rmw_manycore_py.cli.common.finite_range import FiniteRange
 
 _Command = Callable[..., None]
 
@@ -97,7 +97,7 @@ def _qos_options(preset: str, unasked: str) -> Callable[[_Command], _Command]:
             "--qos-liveliness-lease-duration-seconds",
             "lease_s",
             metavar="S",
-            type=Seconds(),
+            type=FiniteRange(min=0, min_open=True),
             help="QoS: time within which a publisher shows that it is alive.",
         )
         @functools.wraps(function)

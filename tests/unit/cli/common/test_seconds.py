@@ -15,14 +15,14 @@ pytestmark = pytest.mark.unit
     ("text", "seconds"),
     [
         *(("90", 90.0), ("0.5", 0.5), ("90s", 90.0), ("5m", 300.0), ("1h30m", 5400.0)),
-        *(("250ms", 0.25), ("1m0.5s", 60.5), ("1e3", 1000.0)),
+        *(("250ms", 0.25), ("1m0.5s", 60.5), ("1e3", 1000.0), ("inf", float("inf"))),
     ],
 )
 def test_units_are_added_up(text: str, seconds: float) -> None:
     assert Seconds().convert(text, None, None) == pytest.approx(seconds)
 
 
-@pytest.mark.parametrize("text", ["", "0", "0s", "-1", "5x", "m", "5m3", "nan", "inf", "1e13"])
+@pytest.mark.parametrize("text", ["", "0", "0s", "-1", "5x", "m", "5m3", "nan", "-inf", "1e13"])
 def test_anything_else_is_a_usage_error(text: str) -> None:
     with pytest.raises(click.BadParameter):
         Seconds().convert(text, None, None)
