@@ -70,7 +70,7 @@ def _ways(problem: Problem, topology: Topology, conflict: Conflict) -> Iterator[
 
 
 def _smem_size(needed: int) -> int:
-    """Return the smallest size of SMEM in MiB that has room for nodes of so many bytes."""
+    """Return the smallest SMEM in MiB that nodes of this size fit into."""
     size = MIB
     while room_for_topic_dsms(size) - Smem(size).head < needed:
         size += MIB

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from statistics import fmean
 
 from rmw_manycore_py.advice.problem import Clusters, Problem, Traffic
 from rmw_manycore_py.advice.weights import Objective
@@ -35,10 +35,15 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Ranked:
-    """A mapping with its simulated run; `score` is in the objective's unit, or relative."""
+    """A mapping with its simulated run.
+
+    :ivar incomplete: chains that no message passed here, though one did in another mapping.
+    :ivar score: in the objective's unit, or relative; of the other chains.
+    """
 
     candidate: Candidate
     prediction: Prediction
+    incomplete: tuple[str, ...]
     score: float
 
 
@@ -70,14 +75,23 @@ def ranked(
     trial: Trial,
     report: Callable[[str], None] = lambda _: None,
 ) -> list[Ranked]:
-    """Return the candidates, the best first."""
+    """Return the candidates, the best first; those with incomplete chains come last."""
     predictions = []
     for number, one in enumerate(candidates, start=1):
         report(f"simulating mapping {number} of {len(candidates)}: {one.name}")
         predictions.append(trial.predict(one.placement))
     scores = _scores(problem, candidates, predictions, trial.objective)
-    found = map(Ranked, candidates, predictions, scores)
-    return sorted(found, key=lambda one: (one.score, _crossing(problem, one.candidate)))
+    found = map(Ranked, candidates, predictions, _incomplete(predictions), scores)
+    return sorted(
+        found,
+        key=lambda one: (len(one.incomplete), one.score, _crossing(problem, one.candidate)),
+    )
+
+
+def _incomplete(predictions: Sequence[Prediction]) -> Iterator[tuple[str, ...]]:
+    complete = [{chain.name for chain in one.chains if chain.samples_us} for one in predictions]
+    known = set[str]().union(*complete)
+    yield from (tuple(sorted(known - own)) for own in complete)
 
 
 def _crossing(problem: Problem, candidate: Candidate) -> float:
@@ -102,14 +116,15 @@ def _scores(
 
 
 def _of_times(predictions: Sequence[Prediction], objective: Objective) -> Iterator[float]:
-    """Yield the mean over all chains of their time / that of the best mapping for the chain."""
-    times = [{chain.name: time_us(chain, objective) for chain in one.chains} for one in predictions]
-    names = sorted({name for own in times for name, time in own.items() if time is not None})
-    best = {name: min(own.get(name) or math.inf for own in times) for name in names}
+    """Yield the mean over complete chains of their time / that of the best mapping for each."""
+    times = [
+        {chain.name: time for chain in one.chains if (time := time_us(chain, objective))}
+        for one in predictions
+    ]
+    names = set[str]().union(*times)
+    best = {name: min(own[name] for own in times if name in own) for name in names}
     for own in times:
-        # A chain that no message passed is worse than any other.
-        shares = [(own.get(name) or math.inf) / best[name] for name in names]
-        yield sum(shares) / len(shares) if shares else 1.0
+        yield fmean(time / best[name] for name, time in own.items()) if own else 1.0
 
 
 def time_us(chain: ChainTimes, objective: Objective) -> float | None:

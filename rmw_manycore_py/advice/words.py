@@ -147,6 +147,7 @@ def _row(problem: Problem, one: Ranked) -> dict[str, Any]:
     return {
         "name": one.candidate.name,
         "score": one.score,
+        "incomplete": one.incomplete,
         "is_best": one.candidate.is_best,
         "messages_per_s": traffic.messages_per_s,
         "bytes_per_s": traffic.bytes_per_s,

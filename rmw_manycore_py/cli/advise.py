@@ -159,7 +159,8 @@ def _report(text: str) -> None:
 def _show(advice: Advice) -> None:
     table = new_table("mapping", "#messages/s between clusters", "#score")
     for row in as_data(advice)["candidates"]:
-        score = f"{row['score']:.3g}"
+        missing = len(row["incomplete"])
+        score = f"{missing} incomplete" if missing else f"{row['score']:.3g}"
         table.add_row(row["name"], f"{row['messages_per_s']:.1f}", score)
     print_table(table)
     echo()

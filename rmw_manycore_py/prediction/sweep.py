@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Values of parameters that nobody has published."""
+"""Ranges of parameters that are not published."""
 
 from __future__ import annotations
 

@@ -304,7 +304,7 @@ def test_a_process_of_another_run_keeps_its_core(manycore, mapfile, platform) ->
     manycore("stop")
 
 
-def test_two_processes_on_one_core_are_told(manycore, start, mapfile, platform) -> None:
+def test_two_processes_on_one_core_are_reported(manycore, start, mapfile, platform) -> None:
     command = [sys.executable, "-m", "rmw_manycore_py.examples.talker"]
     first = start(command, MANYCORE_CORE="3")
     first.wait_for("Hello World")

@@ -65,7 +65,7 @@ def count_inside(topic: str, until: int) -> None:
 
 
 def say_numbers(topic: str, count: int) -> None:
-    """Publish so many numbers once there is a subscription."""
+    """Publish that many numbers once there is a subscription."""
     with peer_node("speaker") as node:
         message = type_of(STRING)
         publisher = node.create_publisher(message, topic, qos({"depth": MANY}))
@@ -156,7 +156,7 @@ def test_a_publisher_without_a_token_is_heard(zenoh, attached) -> None:
     wait_until(lambda: zenoh.row("inward", "/pico")["state"] == "waiting", "it stops to listen")
 
 
-def test_another_definition_of_a_type_is_told(zenoh) -> None:
+def test_another_definition_of_a_type_is_reported(zenoh) -> None:
     other = "RIHS01_" + "5" * 64
     zenoh.run(zenoh.route("inward", "/chat"))
     text = f"@ros2_lv/{zenoh.domain}/a/0/1/MP/%/%/speaker/%chat/{STRING_KEY}/{other}/::,10:,:,:,,"
@@ -189,7 +189,7 @@ def test_a_router_that_is_killed_and_comes_back(zenoh) -> None:
     hearer.wait_for("^heard number")
 
 
-def test_a_peer_that_is_killed_is_told(zenoh) -> None:
+def test_a_killed_peer_is_reported(zenoh) -> None:
     processes = zenoh.run(zenoh.route("inward", "/chat"))
     hearer = zenoh.inside(hear, "/chat", {})
     speaker = zenoh.outside(sdk_say, "/chat", None, 0.05)

@@ -74,7 +74,7 @@ def wait() -> Iterator[Wait]:
     context.try_shutdown()
 
 
-def test_a_timeout_is_told_when_it_has_passed(wait):
+def test_a_timeout_is_reported_when_it_has_passed(wait):
     assert wait(Time()) == wait(Time(0, 1000)) == (TIMEOUT, False)
     wait.trigger()
     assert wait(Time()) == (OK, True)

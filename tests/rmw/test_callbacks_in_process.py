@@ -246,7 +246,7 @@ def test_a_callback_clears_itself_and_destroys_others_of_its_topic(node, arrival
     assert sum(arrival.count for arrival in arrivals) == 1
 
 
-def test_a_callback_that_is_told_of_earlier_messages_may_clear_itself(node):
+def test_a_callback_that_gets_earlier_messages_may_clear_itself(node):
     subscription = listen(node)
     publisher = speak(node)
     publisher.publish(String())

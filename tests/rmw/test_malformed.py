@@ -124,7 +124,7 @@ def test_a_node_goes_on(node, case):
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS does not report it")
-def test_what_is_dropped_is_told(node, capfd):
+def test_dropped_messages_are_reported(node, capfd):
     """By the event of lost messages and by a line in the log, but not by one line per message."""
     _, cdr = broken(BROKEN["length_of_a_string"])
     publisher = node.create_publisher(String, "broken", 200)

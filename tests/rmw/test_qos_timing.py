@@ -94,7 +94,7 @@ def test_before_the_first_message_no_deadline_is_missed(node):
     assert missed == []
 
 
-def test_deadlines_that_nobody_watched_are_told_together(node):
+def test_deadlines_missed_unwatched_are_reported_together(node):
     missed = []
     publisher = node.create_publisher(
         String,

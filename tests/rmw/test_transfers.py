@@ -148,7 +148,7 @@ def test_missed_deadlines_are_counted(moved, start_peer):
     spin_until(moved, lambda: missed and missed[-1].total_count >= 2)
 
 
-def test_the_end_of_a_publisher_is_told(moved, start_peer):
+def test_the_end_of_a_publisher_is_reported(moved, start_peer):
     changes: list[Any] = []
     events = SubscriptionEventCallbacks(liveliness=changes.append)
     moved.create_subscription(Int32, "numbers", lambda _: None, 10, event_callbacks=events)

@@ -180,7 +180,7 @@ def test_a_program_on_standard_input_is_read_once(prefix: Prefix) -> None:
     assert loader_path(json.loads(done.stdout))[0] == str(prefix.stand_ins)
 
 
-def test_a_lost_library_path_is_told_and_not_retried(prefix: Prefix) -> None:
+def test_a_lost_library_path_is_reported_and_not_retried(prefix: Prefix) -> None:
     """If something clears LD_LIBRARY_PATH on the way, Python must not restart forever."""
     done = subprocess.run(
         ["bash", "-c", f"{hook.REPLACED}=$$ exec {prefix.python} -c 'print(1)'"],

@@ -50,7 +50,7 @@ LAYERS = [
 ]
 # The rooms in one of these, likewise. "": the room itself.
 INNER_LAYERS = {
-    ".bench": [("", ".nodes"), (".ndt", ".predict", ".scale")],
+    ".bench": [("", ".nodes"), (".ndt", ".predict", ".scale"), (".advise",)],
     ".cli": [
         (".common", ".topic.meters"),
         (".doctor.report",),

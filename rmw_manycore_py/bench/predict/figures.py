@@ -29,6 +29,7 @@ class Times(BaseModel):
     count: int
     p50_us: float
     p99_us: float
+    max_us: float
 
 
 class Figures(BaseModel):
@@ -51,6 +52,7 @@ def measured_figures(trace: Trace) -> Figures:
                 count=len(total.samples_us),
                 p50_us=total.quantile(0.5),
                 p99_us=total.quantile(0.99),
+                max_us=total.quantile(1.0),
             )
     cpus: dict[int, float] = defaultdict(float)
     for load in recorded.loads():

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rmw_manycore_program import own_program
+from rmw_manycore_py.bench.load import busy
 from rmw_manycore_py.bench.predict.figures import (
     SCHEDULING,
     Figures,
@@ -21,7 +22,8 @@ from rmw_manycore_py.bench.predict.figures import (
 )
 from rmw_manycore_py.bench.predict.mappings import random_mapping
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.process.scheduling import scheduled_as
+from rmw_manycore_py.platform.topology import usable_cpus
+from rmw_manycore_py.process.scheduling import Scheduling, scheduled_as
 from rmw_manycore_py.profile.files import load as load_profile
 from rmw_manycore_py.profile.model import Profile
 from rmw_manycore_py.trace.files import load as load_trace
@@ -65,20 +67,24 @@ def compared(plan: Plan, note: Callable[[str], None]) -> list[Compared]:
     :raises ManycoreError: if a run fails.
     """
     plan.directory.mkdir(parents=True, exist_ok=True)
-    profile = _profile(plan, note)
+    profile = profile_of(plan, note)
     found = []
     for number in range(plan.mappings):
         mapping = random_mapping(plan.mapfile, number, plan.seed, plan.directory)
         runs = []
         for turn in range(plan.repetitions):
             note(f"{plan.name}: mapping {number + 1} of {plan.mappings}, run {turn + 1}")
-            runs.append(_measured(plan, mapping, turn))
+            runs.append(measured(plan, mapping, turn))
         predicted = predicted_figures(mapping, profile, plan.duration_s * 6, plan.seed)
         found.append(Compared(number, runs, predicted))
     return found
 
 
-def _profile(plan: Plan, note: Callable[[str], None]) -> Profile:
+def profile_of(plan: Plan, note: Callable[[str], None]) -> Profile:
+    """Return the profile of a plan's mapfile; record it unless it is there already.
+
+    :raises ManycoreError: if the run fails.
+    """
     path = plan.directory / "profile.json"
     if not path.exists():
         note(f"{plan.name}: profile of {plan.mapfile}")
@@ -87,12 +93,26 @@ def _profile(plan: Plan, note: Callable[[str], None]) -> Profile:
     return load_profile(path)
 
 
-def _measured(plan: Plan, mapping: Path, turn: int) -> Figures:
-    path = plan.directory / f"{mapping.stem}-run-{turn + 1}.json"
+def measured(plan: Plan, mapping: Path, turn: int, loops: int = 0) -> Figures:
+    """Return the figures of a run of a mapping; run it unless that was done already.
+
+    :param loops: busy loops beside the run, which is not in real time then.
+    :raises ManycoreError: if the run fails.
+    """
+    beside = f"-beside-{loops}" if loops else ""
+    path = plan.directory / f"{mapping.stem}{beside}-run-{turn + 1}.json"
     if not path.exists():
         trace = plan.directory / "trace.csv"
         options = ("--duration", f"{plan.duration_s:g}", "--trace", str(trace))
-        others = _run(plan, "run", str(mapping), *options, duration_s=plan.duration_s)
+        with busy(loops, usable_cpus(), _START_S + plan.duration_s):
+            others = _run(
+                plan,
+                "run",
+                str(mapping),
+                *options,
+                duration_s=plan.duration_s,
+                scheduling=None if loops else SCHEDULING,
+            )
         figures = measured_figures(load_trace(trace)).model_copy(update={"others": others})
         trace.unlink()
         with replacing(path) as file:
@@ -100,12 +120,14 @@ def _measured(plan: Plan, mapping: Path, turn: int) -> Figures:
     return Figures.model_validate_json(path.read_bytes())
 
 
-def _run(plan: Plan, *words: str, duration_s: float) -> float:
-    """Run a command in real time; return the share of the CPUs that other processes took."""
+def _run(
+    plan: Plan, *words: str, duration_s: float, scheduling: Scheduling | None = SCHEDULING
+) -> float:
+    """Run a command; return the share of the CPUs that other processes took."""
     command = own_program("rmw_manycore_py.cli", *words)
     begin_s, busy_s, own_s = time.monotonic(), _busy_s(), _children_s()
     try:
-        with scheduled_as(SCHEDULING):
+        with scheduled_as(scheduling):
             process = subprocess.Popen(
                 command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
             )

@@ -141,7 +141,7 @@ def _summary(errors: Sequence[MappingError]) -> dict[str, Any]:
 def _show(name: str, mappings: Sequence[Compared]) -> None:
     echo(f"\n{name}")
     table = new_table(
-        "#mapping", "#load", "#chains", "#p50 error", "#largest", "#p99", "#load points"
+        "#mapping", "#load", "#chains", "#p50 error", "#largest", "#p99", "#load points", "#others"
     )
     errors = [error_of(one) for one in mappings]
     for one in errors:

@@ -16,7 +16,7 @@ from rmw_manycore_py.ndt.simulation.street import build_street
 pytestmark = pytest.mark.unit
 
 
-def test_the_error_of_each_is_told_from_the_others():
+def test_the_error_of_each_is_distinguished_from_the_others():
     generator = np.random.default_rng(1)
     truth = generator.uniform(-50.0, 50.0, (4000, 3))
     errors_cm = (1.0, 2.0, 3.0)  # root mean squares

@@ -40,7 +40,7 @@ def test_errors_and_cpu_time_of_a_run():
     assert node.CPU not in {result.question for result in node.results(node.KILLED, rows)}
 
 
-def test_the_node_s_part_of_the_way_is_told_beside_it():
+def test_the_node_s_part_of_the_way_is_given_beside_it():
     rows = [
         {"state": "answered", "latency_ms": "9.5", "execution_time": "6.25"},
         {"state": "lost", "latency_ms": "", "execution_time": "6.5"},  # refused after matching

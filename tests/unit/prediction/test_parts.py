@@ -58,7 +58,8 @@ def test_parts_without_times_are_refused() -> None:
 
 def figures(p50_us: float, load: float = 0.3) -> Figures:
     return Figures(
-        chains={"chain": Times(count=100, p50_us=p50_us, p99_us=2 * p50_us)}, cpus={0: load}
+        chains={"chain": Times(count=100, p50_us=p50_us, p99_us=2 * p50_us, max_us=3 * p50_us)},
+        cpus={0: load},
     )
 
 

@@ -33,7 +33,7 @@ def test_a_helper_calls_functions_beside_this_process():
     assert not Path(f"/proc/{pid}").exists()
 
 
-def test_a_helper_that_is_killed_is_told_and_replaced():
+def test_a_killed_helper_is_reported_and_replaced():
     helper = HelperProcess("tester", 7)
     pid = helper.call(os.getpid)
     with pytest.raises(ManycoreError, match="the tester process ended unexpectedly"):

@@ -137,7 +137,7 @@ def test_hops_add_up_and_are_what_caret_calls_them() -> None:
     }
 
 
-def test_what_got_slower_is_told() -> None:
+def test_slower_chains_are_reported() -> None:
     changes = compare(evaluated(example()), evaluated(example(slower_us=50)))
     assert {change.part: change.verdict for change in changes} == {
         "communication /image": "same",

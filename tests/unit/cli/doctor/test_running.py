@@ -67,7 +67,7 @@ def test_a_damaged_manifest_is_a_failure() -> None:
     assert finding.verdict is Verdict.FAILURE
 
 
-def test_isolated_cpus_are_told(tmp_path: Path) -> None:
+def test_isolated_cpus_are_reported(tmp_path: Path) -> None:
     assert check_isolation(tmp_path).found == "none"
     cpu = min(os.sched_getaffinity(0))
     (tmp_path / "isolated").write_text(f"{cpu},1000\n")

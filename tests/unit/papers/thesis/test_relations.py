@@ -93,7 +93,7 @@ def test_all_hold_for_the_times_of_the_thesis() -> None:
         ("T6", lambda c, size, us: us * (1.3 if c.source == "CC SMEM" else 1)),
     ],
 )
-def test_one_that_does_not_hold_is_told(
+def test_a_relation_that_does_not_hold_is_reported(
     broken: str, changed: Callable[[Case, int, float], float]
 ) -> None:
     assert held_of_transfers(Transfers(changed)) == ALL - {broken}
@@ -160,7 +160,7 @@ def test_all_hold_for_the_products_of_the_thesis() -> None:
         ({"M3"}, lambda c, ms: ms * (c.threads if c.place.startswith("off") and c.n == 280 else 1)),
     ],
 )
-def test_a_product_that_does_not_fit_is_told(
+def test_a_product_that_does_not_fit_is_reported(
     broken: set[str], changed: Callable[[Product, float], float]
 ) -> None:
     held = held_of_products(Products(changed))

@@ -62,7 +62,7 @@ def test_only_late_arrivals_count() -> None:
     assert topic_latencies(trace, since_ns=10**12) == {}
 
 
-def test_records_are_told_apart_by_all_of_their_numbers() -> None:
+def test_records_are_distinguished_by_all_of_their_numbers() -> None:
     """Numbers that differ in their high half only, and slots in their high half only."""
     found = topic_latencies(trace_of({7: 100, 1 << 32 | 7: 200}))["/image"]
     assert (found.count, found.p50_us) == (2, pytest.approx(150))

@@ -112,12 +112,12 @@ def test_cpu_time_is_that_since_the_sample_before() -> None:
     assert LOADS.receive_thread_rates_hz() == {1: 10.0}
 
 
-def test_deaths_are_told() -> None:
+def test_deaths_are_reported() -> None:
     (death,) = deaths([TALKER])
     assert death.text == "/talker died (pid 70, cluster 1 core 2)"
 
 
-def test_losses_and_missed_deadlines_are_told() -> None:
+def test_losses_and_missed_deadlines_are_reported() -> None:
     assert [(one.kind, one.text) for one in Losses().told_of(LOADS)] == [
         ("lost", "/t: 3 lost by /listener"),
         ("deadline", "/t: /listener missed its deadline 2 times"),
@@ -142,7 +142,7 @@ def test_what_goes_on_is_summed_up() -> None:
     assert list(losses.rest(40.0)) == []
 
 
-def test_what_was_not_told_is_told_at_the_end() -> None:
+def test_unreported_changes_are_reported_at_the_end() -> None:
     losses = Losses()
     samples = [sample(float(n), [(C, [0, 0, 3 * n])], {}) for n in range(3)]
     assert len(list(losses.told_of(Loads(*samples[:2])))) == 1
