@@ -7,7 +7,7 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from rmw_manycore_py.launch.runs.client import Client
 from rmw_manycore_py.launch.runs.directory import RunDirectory, runs_of
 from support import IS_MANYCORE, wait_until
+from support.processes.background import background_runs
 from support.processes.commands import manycore_command
 from support.processes.platforms import leftovers
 from support.processes.program import Program
@@ -44,19 +45,9 @@ while True:
 
 
 @pytest.fixture
-def manycore(start, platform: str) -> Iterator[Any]:
-    """Run `manycore` and return its output; runs end with the test."""
-
-    def call(*words: str | Path, status: int = 0) -> Program:
-        program = start(manycore_command(*words))
-        assert program.wait() == status, program
-        return program
-
-    yield call
-    for run in runs_of(platform):
-        if run.is_alive:
-            os.kill(run.info["pid"], signal.SIGKILL)
-            run.wait()
+def manycore(start, platform: str) -> Iterator[Callable[..., Program]]:
+    with background_runs(start, platform) as call:
+        yield call
 
 
 @pytest.fixture

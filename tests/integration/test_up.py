@@ -8,7 +8,7 @@ import os
 import signal
 import stat
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from rmw_manycore_py.launch.runs.directory import RunDirectory, runs_of
 from support import IS_MANYCORE, TIMEOUT_S, wait_until
 from support.peers.programs import run_manycore
+from support.processes.background import background_runs
 from support.processes.commands import manycore_command, peer_command
 from support.processes.platforms import leftovers
 from support.processes.program import Program
@@ -46,19 +47,9 @@ def write(directory: Path, name: str = "map.yaml", **nodes: str) -> Path:
 
 
 @pytest.fixture
-def manycore(start, platform: str) -> Iterator[Any]:
-    """Run `manycore` and return its output; runs end with the test."""
-
-    def call(*words: str | Path, status: int = 0) -> Program:
-        program = start(manycore_command(*words))
-        assert program.wait() == status, program
-        return program
-
-    yield call
-    for run in runs_of(platform):
-        if run.is_alive:
-            os.kill(run.info["pid"], signal.SIGKILL)
-            run.wait()
+def manycore(start, platform: str) -> Iterator[Callable[..., Program]]:
+    with background_runs(start, platform) as call:
+        yield call
 
 
 def the_run(platform: str) -> RunDirectory:

@@ -1,0 +1,32 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Runs of `manycore up -d`, which end with the test."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rmw_manycore_py.launch.runs.directory import runs_of
+from support.processes.commands import manycore_command
+from support.processes.program import Program
+
+
+@contextmanager
+def background_runs(
+    start: Callable[..., Program], platform: str
+) -> Iterator[Callable[..., Program]]:
+    """Yield a function that runs `manycore`, checks its status and returns the program."""
+
+    def call(*words: str | Path, status: int = 0) -> Program:
+        program = start(manycore_command(*words))
+        assert program.wait() == status, program
+        return program
+
+    yield call
+    for run in runs_of(platform):
+        if run.is_alive:
+            os.kill(run.info["pid"], signal.SIGKILL)
+            run.wait()
