@@ -27,18 +27,19 @@ from support.processes.program import Program
 pytestmark = pytest.mark.integration
 
 CPU = min(os.sched_getaffinity(0))
+# Handlers write to the descriptor: the signal may come while "ready" is still being printed.
 STUBBORN = """
-import signal, time
+import os, signal, time
 for number in (signal.SIGINT, signal.SIGTERM):
-    signal.signal(number, lambda *_: print("no", flush=True))
+    signal.signal(number, lambda *_: os.write(1, b"no\\n"))
 print("ready", flush=True)
 while True:
     time.sleep(60)
 """
 POLITE = """
-import signal, sys
+import os, signal, sys
 def leave(*_):
-    print("bye", flush=True)
+    os.write(1, b"bye\\n")
     sys.exit(0)
 signal.signal(signal.SIGINT, leave)
 print("ready", flush=True)

@@ -9,9 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
+import yaml
+
 from rmw_manycore_py.advice.advising import Request, advise
 from rmw_manycore_py.bench.predict.figures import Figures
-from rmw_manycore_py.bench.predict.mappings import random_mapping
+from rmw_manycore_py.bench.predict.mappings import movable, random_mapping
 from rmw_manycore_py.bench.predict.runs import Plan, measured, profile_of
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.platform.topology import usable_cpus
@@ -129,7 +131,7 @@ def _advised(plan: Plan, profile: Profile, topics: tuple[str, ...]) -> Path:
     """Write the advised mapfile, unless it is there already."""
     path = plan.directory / "advised.yaml"
     if not path.exists():
-        text = plan.mapfile.read_text(encoding="utf-8")
+        text = yaml.safe_dump(movable(plan.mapfile), sort_keys=False)
         advice = advise(path, text, profile, Request(chain=topics))
         path.write_text(advice.best.candidate.text, encoding="utf-8")
     return path

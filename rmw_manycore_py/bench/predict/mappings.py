@@ -24,9 +24,7 @@ def random_mapping(mapfile: Path, number: int, seed: int, directory: Path) -> Pa
     :raises ManycoreError: if no mapping was found that fits.
     """
     path = directory / f"mapping-{number:02}.yaml"
-    sections = yaml.safe_load(mapfile.read_text(encoding="utf-8"))
-    if "launch_path" in sections:
-        sections["launch_path"] = str((mapfile.parent / sections["launch_path"]).resolve())
+    sections = movable(mapfile)
     draw = random.Random(f"{mapfile.name} {seed} {number}")
     problem: ManycoreError | None = None
     for _ in range(_TRIES):
@@ -39,6 +37,14 @@ def random_mapping(mapfile: Path, number: int, seed: int, directory: Path) -> Pa
         else:
             return path
     raise ManycoreError(f"{mapfile}: no random mapping fits: {problem}")
+
+
+def movable(mapfile: Path) -> dict[str, Any]:
+    """Return the sections of a mapfile, with paths that hold in another directory."""
+    sections: dict[str, Any] = yaml.safe_load(mapfile.read_text(encoding="utf-8"))
+    if "launch_path" in sections:
+        sections["launch_path"] = str((mapfile.parent / sections["launch_path"]).resolve())
+    return sections
 
 
 def _place(nodes: dict[str, Any], mapfile: Path, draw: random.Random) -> None:
