@@ -22,7 +22,7 @@ from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import Mapfile, load_mapfile, resolve
 from rmw_manycore_py.mapfile.placing.moves import RoomError
 from rmw_manycore_py.platform.topology import usable_cpus
-from rmw_manycore_py.prediction import require_simpy
+from rmw_manycore_py.prediction import TARGETS, Target, require_simpy
 from rmw_manycore_py.profile.model import Profile
 
 Report = Callable[[str], None]
@@ -35,6 +35,7 @@ class Request:
     :param chain: topics of the chain that matters; empty: all chains count alike.
     :param wishes: kind and text of constraints.
     :param in_real_time: whether nodes of that chain may have real-time priorities on a host.
+    :param target: where mappings are simulated; None: the mapfile's platform.
     :param duration_s: simulated time of each candidate.
     """
 
@@ -44,6 +45,11 @@ class Request:
     effort: Effort = field(default_factory=Effort)
     in_real_time: bool = True
     duration_s: float = 10.0
+    target: Target | None = None
+
+    def target_of(self, mapfile: Mapfile) -> Target:
+        """Return where mappings are simulated."""
+        return self.target or TARGETS[mapfile.topology.profile]
 
 
 @dataclass(frozen=True)
@@ -89,7 +95,12 @@ def advise(
     if not found:
         raise InfeasibleError(problem, mapfile.topology, conflict_in(problem, request.effort))
     trial = Trial(
-        profile, request.objective, request.chain, request.duration_s, request.effort.seed
+        profile,
+        request.target_of(mapfile),
+        request.objective,
+        request.chain,
+        request.duration_s,
+        request.effort.seed,
     )
     return Advice(problem, application, ranked(problem, found, trial, report))
 
@@ -110,7 +121,7 @@ def _candidates(
 
     :raises MapfileError: if the mapfile has problems that other places do not solve.
     """
-    cpus = usable_cpus() if mapfile.topology.profile == "host" else ()
+    cpus = usable_cpus() if request.target_of(mapfile).cpus == "host" else ()
     with_priorities = (False, True) if request.in_real_time and cpus and problem.hot else (False,)
     if not [*problem.broken(problem.now)]:
         placement = resolve(mapfile, to_start=False)

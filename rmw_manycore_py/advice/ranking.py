@@ -10,7 +10,7 @@ from statistics import fmean
 from rmw_manycore_py.advice.problem import Clusters, Problem, Traffic
 from rmw_manycore_py.advice.weights import Objective
 from rmw_manycore_py.mapfile import Placement
-from rmw_manycore_py.prediction import TARGETS, Prediction, predict, sites_of
+from rmw_manycore_py.prediction import Prediction, Target, predict, sites_of
 from rmw_manycore_py.prediction.prediction import ChainTimes
 from rmw_manycore_py.profile.model import Profile
 
@@ -52,6 +52,7 @@ class Trial:
     """How candidates are simulated."""
 
     profile: Profile
+    target: Target
     objective: Objective
     chain: tuple[str, ...]
     duration_s: float
@@ -62,7 +63,7 @@ class Trial:
         return predict(
             sites_of(placement),
             self.profile,
-            TARGETS[placement.topology.profile],
+            self.target,
             seed=self.seed,
             duration_s=self.duration_s,
             chains=[self.chain] if self.chain else None,

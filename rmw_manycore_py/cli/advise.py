@@ -24,6 +24,7 @@ from rmw_manycore_py.cli.common.printing import (
     print_table,
 )
 from rmw_manycore_py.mapfile.format.document import read_text
+from rmw_manycore_py.prediction.target_file import target_named
 from rmw_manycore_py.profile.files import load
 
 _NODES = "NODE,.."
@@ -35,6 +36,7 @@ _NODES = "NODE,.."
         "manycore advise map.yaml --profile app.profile.json -o advised.yaml",
         "manycore advise map.yaml --profile app.profile.json --chain '/image /small'",
         "manycore advise map.yaml --profile app.profile.json --apart 'planner,backup_*'",
+        "manycore advise map.yaml --profile app.profile.json --platform host",
     ),
 )
 @mapfile_argument()
@@ -53,6 +55,12 @@ _NODES = "NODE,.."
 )
 @click.option(
     "--chain", help="Topics of the chain that matters, separated by spaces.  [default: all chains]"
+)
+@click.option(
+    "--platform",
+    "platform_name",
+    metavar="NAME",
+    help="Judge on host, coolidge, bostan, or a file's platform.  [default: MAPFILE's]",
 )
 @click.option("--fix", multiple=True, metavar=_NODES, help="Leave these nodes where they are.")
 @click.option("--together", multiple=True, metavar=_NODES, help="Put them into one cluster.")
@@ -101,6 +109,7 @@ def command(
     profile: Path,
     objective: Objective,
     chain: str | None,
+    platform_name: str | None,
     fix: tuple[str, ...],
     together: tuple[str, ...],
     apart: tuple[str, ...],
@@ -130,6 +139,7 @@ def command(
         effort=Effort(candidates, effort, seed),
         in_real_time=not no_priorities,
         duration_s=duration_s,
+        target=target_named(platform_name) if platform_name else None,
     )
     known = load(profile)
     advice = advise(output or mapfile, read_text(mapfile), known, request, _report)

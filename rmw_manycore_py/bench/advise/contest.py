@@ -17,6 +17,7 @@ from rmw_manycore_py.bench.predict.mappings import movable, random_mapping
 from rmw_manycore_py.bench.predict.runs import Plan, measured, profile_of
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.platform.topology import usable_cpus
+from rmw_manycore_py.prediction import TARGETS
 from rmw_manycore_py.profile.model import Profile
 
 
@@ -132,6 +133,6 @@ def _advised(plan: Plan, profile: Profile, topics: tuple[str, ...]) -> Path:
     path = plan.directory / "advised.yaml"
     if not path.exists():
         text = yaml.safe_dump(movable(plan.mapfile), sort_keys=False)
-        advice = advise(path, text, profile, Request(chain=topics))
+        advice = advise(path, text, profile, Request(chain=topics, target=TARGETS["host"]))
         path.write_text(advice.best.candidate.text, encoding="utf-8")
     return path

@@ -47,7 +47,13 @@ def run(times_us: Mapping[str, tuple[float, ...]]) -> Prediction:
 def order(placement: Placement, **runs: Mapping[str, tuple[float, ...]]) -> list[Ranked]:
     found = [Candidate(name, (1,), "", placement, is_best=False) for name in runs]
     trial = Simulated(
-        Profile.model_construct(), "p99", (), 1.0, 0, [run(times) for times in runs.values()]
+        Profile.model_construct(),
+        TARGETS["host"],
+        "p99",
+        (),
+        1.0,
+        0,
+        [run(times) for times in runs.values()],
     )
     return ranked(PROBLEM, found, trial)
 
