@@ -2,12 +2,15 @@
 #include "platform/shared_memory.hpp"
 
 #include <fcntl.h>
+#include <linux/mempolicy.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <utility>
 
@@ -18,6 +21,7 @@ namespace manycore {
 namespace {
 
 constexpr uint64_t step_bytes = 4 << 20;  ///< takes about 3 ms to back
+constexpr size_t max_numa_nodes = 1024;   ///< of the kernel, at most
 
 uint64_t page_floor(uint64_t x) { return x & ~(page_bytes - 1); }
 uint64_t page_ceil(uint64_t x) { return page_floor(x + page_bytes - 1); }
@@ -165,6 +169,19 @@ void SharedMemory::populate(uint64_t offset, uint64_t length) const noexcept {
   const uint64_t first = page_floor(offset);
   // Kernels before 5.14 reject the advice; the first access then maps each page.
   madvise(data_ + first, page_ceil(offset + length) - first, MADV_POPULATE_WRITE);
+}
+
+bool SharedMemory::prefer_numa_node(int node) const noexcept {
+  constexpr size_t word_bits = 8 * sizeof(unsigned long);
+  std::array<unsigned long, max_numa_nodes / word_bits> nodes{};
+  if (node < 0 || static_cast<size_t>(node) >= max_numa_nodes) {
+    return false;
+  }
+  nodes[static_cast<size_t>(node) / word_bits] = 1ul << (static_cast<size_t>(node) % word_bits);
+  // The policy is of the file in tmpfs, not of this mapping. MPOL_BIND would kill a process when
+  // the node is full. The kernel reads one bit less than it is given.
+  return syscall(SYS_mbind, data_, size_, MPOL_PREFERRED, nodes.data(), max_numa_nodes + 1, 0u) ==
+         0;
 }
 
 bool SharedMemory::copy_out(uint64_t offset, void * to, size_t length) const noexcept {

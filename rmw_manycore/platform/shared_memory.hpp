@@ -53,6 +53,11 @@ public:
     return *reinterpret_cast<T *>(data_ + offset);
   }
 
+  /// Makes the kernel take the file's further pages from this NUMA node while it has free memory,
+  /// whichever process needs them. False where the system refuses, as containers may; the pages are
+  /// then from the node of the CPU that needs them.
+  bool prefer_numa_node(int node) const noexcept;
+
   /// Room of the file system that holds the file.
   FileSystemRoom file_system_room() const noexcept;
   /// Backs [offset, offset + length) with memory. Throws Error{no_space} naming the size needed.

@@ -39,7 +39,7 @@ void ensure_cluster(Registry & registry, uint32_t id) {
   }
   // Left by a creator that died before it set the bit.
   unlink(registry.paths().cluster(id).c_str());
-  Cluster::create(registry.paths(), id, header.profile.smem_bytes, registry.nonce());
+  Cluster::create(registry.paths(), id, header.profile, registry.nonce());
   registry.clusters().at(id);
   transfer_pipes::create(registry, registry.paths(), id);
   header.clusters_present.fetch_or(bit);

@@ -49,7 +49,8 @@ class Request:
 
     def target_of(self, mapfile: Mapfile) -> Target:
         """Return where mappings are simulated."""
-        return self.target or TARGETS[mapfile.topology.profile]
+        topology = mapfile.topology
+        return self.target or TARGETS["host" if topology.is_machine else topology.profile]
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,8 @@ def _candidates(
 
     :raises MapfileError: if the mapfile has problems that other places do not solve.
     """
-    cpus = usable_cpus() if request.target_of(mapfile).cpus == "host" else ()
+    is_shared = request.target_of(mapfile).cpus == "host" and not mapfile.topology.is_machine
+    cpus = usable_cpus() if is_shared else ()
     with_priorities = (False, True) if request.in_real_time and cpus and problem.hot else (False,)
     if not [*problem.broken(problem.now)]:
         placement = resolve(mapfile, to_start=False)

@@ -47,6 +47,11 @@ def configured_platform(placement: Placement) -> _transport.Configurator:
                 )
                 for topic in placement.topics
             ],
+            numa_node_of_cluster={
+                cluster.id: cluster.host.node
+                for cluster in topology.clusters
+                if cluster.host is not None and cluster.host.node is not None
+            },
         )
 
 

@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.platform.machine.clusters import HostCluster, clusters_of
+from rmw_manycore_py.platform.machine.sysfs import cpus_of_list, read_cpus
 
 MIB = 1024 * 1024
 RECEIVE_THREAD_CORE = 0
@@ -36,11 +38,12 @@ class Core(NamedTuple):
 
 @dataclass(frozen=True)
 class Cluster:
-    """One cluster with its local memory (SMEM)."""
+    """One cluster with its local memory (SMEM); of a machine, with its place there."""
 
     id: int
     cores: int
     smem_size: int
+    host: HostCluster | None = None
 
     @property
     def reserved(self) -> frozenset[int]:
@@ -76,13 +79,21 @@ class Topology:
         """Return the cluster of that number; None if there is none."""
         return self.clusters[number - 1] if 1 <= number <= len(self.clusters) else None
 
-    def default_host_cpu(self, core: Core, cpus: Sequence[int]) -> int:
-        """Return the host CPU of a core without a mapfile."""
-        index = (core.cluster - 1) * self.cores_per_cluster + core.core
-        return cpus[index % len(cpus)]
+    @property
+    def is_machine(self) -> bool:
+        """Whether clusters are those of this machine, and each core is a host CPU."""
+        return self.profile == MACHINE
+
+    def host_cpu(self, core: Core) -> int | None:
+        """Return the host CPU that a core is; None if any CPU may stand for it."""
+        cluster = self.cluster(core.cluster)
+        if cluster is None or cluster.host is None or core.core >= cluster.cores:
+            return None
+        return cluster.host.cpus[core.core]
 
 
-PROFILES = ("host", "coolidge", "bostan")
+MACHINE = "machine"
+PROFILES = ("host", MACHINE, "coolidge", "bostan")
 
 
 def profile(
@@ -92,7 +103,12 @@ def profile(
     cores_per_cluster: int | None = None,
     smem_size: int | None = None,
 ) -> Topology:
-    """Return a profile's shape, with the given parts replaced."""
+    """Return a profile's shape, with the given parts replaced; a machine keeps its clusters.
+
+    :raises ManycoreError: if this process may use no cluster of the machine.
+    """
+    if name == MACHINE:
+        return of_machine(machine_clusters(), smem_size)
     shapes = {
         "host": (5, 16, 0, None),
         "coolidge": (5, 16, 0, 4 * MIB),
@@ -105,6 +121,24 @@ def profile(
     cores = [cores_per_cluster or own_cores] * count + [IO_CLUSTER_CORES] * io_clusters
     smem = smem_size or own_smem or host_smem_size(len(cores))
     return Topology(name, tuple(Cluster(i, n, smem) for i, n in enumerate(cores, start=1)))
+
+
+def of_machine(clusters: Sequence[HostCluster], smem_size: int | None = None) -> Topology:
+    """Return the platform whose cores are the CPUs of these clusters.
+
+    :raises ManycoreError: if there are none.
+    """
+    if not clusters:
+        text = "no cluster has two CPUs that this process may use: choose the platform 'host'"
+        raise ManycoreError(text, EXIT_BAD_INPUT)
+    smem = smem_size or host_smem_size(len(clusters))
+    numbered = enumerate(clusters, start=1)
+    return Topology(MACHINE, tuple(Cluster(i, len(one.cpus), smem, one) for i, one in numbered))
+
+
+def machine_clusters() -> tuple[HostCluster, ...]:
+    """Return the clusters of this machine, with the CPUs that this process may use."""
+    return clusters_of(read_cpus(), {*usable_cpus(), *isolated_cpus()})
 
 
 def platforms_directory() -> Path:
@@ -159,12 +193,6 @@ def isolated_cpus(system: Path = Path("/sys/devices/system/cpu")) -> tuple[int, 
         return ()
     before = os.sched_getaffinity(0)
     return tuple(cpu for cpu in isolated if cpu in before or _may_run_on(cpu, before))
-
-
-def cpus_of_list(text: str) -> tuple[int, ...]:
-    """Parse a CPU list of the kernel: 0-2,5."""
-    ends = [part.split("-") for part in text.strip().split(",") if part]
-    return tuple(cpu for end in ends for cpu in range(int(end[0]), int(end[-1]) + 1))
 
 
 def _may_run_on(cpu: int, before: Collection[int]) -> bool:

@@ -279,7 +279,7 @@ TEST_CASE("a receive thread that is started after all nodes died removes the pla
   under_join_lock(paths, [&] {
     ensure_platform(paths, host_profile(), {});
     Registry registry(paths);
-    Cluster::create(paths, 1, registry.header().profile.smem_bytes, registry.nonce());
+    Cluster::create(paths, 1, registry.header().profile, registry.nonce());
     registry.header().clusters_present = 1;
     const uint32_t slot = registry.processes().take("processes");
     registry.processes()[slot].pid = dead;

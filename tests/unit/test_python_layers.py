@@ -82,7 +82,7 @@ INNER_LAYERS = {
         (".roslite.nodes", ".roslite.vehicle"),
         (".roslite.bench",),
     ],
-    ".platform": [("",), (".monitor",)],
+    ".platform": [(".machine",), ("",), (".monitor",)],
     ".recording": [("",), (".play", ".record")],
     ".trace": [("",), (".files",)],
     "rmw_manycore_bridge": [(".outside",), (".fastdds", ".zenoh"), ("",)],

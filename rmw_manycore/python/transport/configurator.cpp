@@ -20,7 +20,8 @@ namespace {
 
 Profile profile_of(
   uint32_t clusters, uint32_t cores_per_cluster, uint64_t smem_bytes,
-  const std::map<uint32_t, int> & host_cpu_of_receive_thread) {
+  const std::map<uint32_t, int> & host_cpu_of_receive_thread,
+  const std::map<uint32_t, int> & numa_node_of_cluster) {
   if (clusters == 0 || clusters > max_clusters) {
     throw nb::value_error("clusters: expected 1 to 64");
   }
@@ -28,11 +29,15 @@ Profile profile_of(
   profile.clusters = clusters;
   profile.cores_per_cluster = cores_per_cluster;
   profile.smem_bytes = smem_bytes != 0 ? smem_bytes / 4096 * 4096 : profile.smem_bytes;
-  for (const auto & [cluster, cpu] : host_cpu_of_receive_thread) {
-    if (cluster >= 1 && cluster <= clusters) {
-      profile.host_cpu_of_receive_thread[cluster - 1] = cpu;
+  const auto fill = [&](int32_t * values, const std::map<uint32_t, int> & by_cluster) {
+    for (const auto & [cluster, value] : by_cluster) {
+      if (cluster >= 1 && cluster <= clusters) {
+        values[cluster - 1] = value;
+      }
     }
-  }
+  };
+  fill(profile.host_cpu_of_receive_thread, host_cpu_of_receive_thread);
+  fill(profile.numa_node, numa_node_of_cluster);
   return profile;
 }
 
@@ -42,9 +47,12 @@ public:
   BoundConfigurator(
     const std::string & name, uint32_t clusters, uint32_t cores_per_cluster, uint64_t smem_bytes,
     const std::map<uint32_t, int> & host_cpu_of_receive_thread,
-    const std::vector<TopicConfiguration> & topics)
+    const std::vector<TopicConfiguration> & topics,
+    const std::map<uint32_t, int> & numa_node_of_cluster)
   : configurator_(std::make_unique<Configurator>(
-      name, profile_of(clusters, cores_per_cluster, smem_bytes, host_cpu_of_receive_thread),
+      name,
+      profile_of(
+        clusters, cores_per_cluster, smem_bytes, host_cpu_of_receive_thread, numa_node_of_cluster),
       topics)) {}
 
   void close() { configurator_.reset(); }
@@ -93,9 +101,10 @@ void bind_configurator(nb::module_ & module) {
   bound.def(
     nb::init<
       const std::string &, uint32_t, uint32_t, uint64_t, const std::map<uint32_t, int> &,
-      const std::vector<TopicConfiguration> &>(),
+      const std::vector<TopicConfiguration> &, const std::map<uint32_t, int> &>(),
     nb::arg("name"), nb::kw_only(), nb::arg("clusters"), nb::arg("cores_per_cluster"),
-    nb::arg("smem_bytes"), nb::arg("host_cpu_of_receive_thread"), nb::arg("topics"));
+    nb::arg("smem_bytes"), nb::arg("host_cpu_of_receive_thread"), nb::arg("topics"),
+    nb::arg("numa_node_of_cluster") = std::map<uint32_t, int>{});
   bind_context(bound);
 }
 

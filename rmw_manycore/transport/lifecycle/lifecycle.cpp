@@ -185,9 +185,8 @@ Profile host_profile() {
   struct statvfs fs {};
   statvfs(UserDirectory::from_environment().place().c_str(), &fs);
   profile.smem_bytes = host_smem_bytes(uint64_t{fs.f_blocks} * fs.f_frsize, profile.clusters);
-  for (int32_t & cpu : profile.host_cpu_of_receive_thread) {
-    cpu = -1;
-  }
+  std::fill_n(profile.host_cpu_of_receive_thread, max_clusters, -1);
+  std::fill_n(profile.numa_node, max_clusters, -1);
   return profile;
 }
 

@@ -48,7 +48,7 @@ class Cluster {
 public:
   /// Creates segment and pipe. The caller holds the join lock.
   static void create(
-    const PlatformPaths & paths, uint32_t id, uint64_t smem_bytes, uint64_t platform_nonce);
+    const PlatformPaths & paths, uint32_t id, const Profile & profile, uint64_t platform_nonce);
   /// Throws Error{corrupt}.
   Cluster(const PlatformPaths & paths, uint32_t id, uint64_t platform_nonce);
 

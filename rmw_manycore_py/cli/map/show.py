@@ -22,6 +22,7 @@ from rmw_manycore_py.cli.common.printing import (
     size_text,
 )
 from rmw_manycore_py.cli.common.rates import load_rates
+from rmw_manycore_py.cli.map.drawing import drawing_of
 from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
 from rmw_manycore_py.mapfile.placing.show import as_data, rules_in_words
 from rmw_manycore_py.mapping import Facts, facts_of
@@ -65,6 +66,10 @@ def command(mapfile: Path, trace: Path | None, profile: Path | None, as_json: bo
         return
     print_notices([*placement.notices, *warnings])
     _show_nodes(placement)
+    if placement.topology.is_machine:
+        echo("")
+        for line in drawing_of(placement):
+            echo(line)
     _show_rules(placement)
     _show_topics(placement)
     _show_crossings(facts)

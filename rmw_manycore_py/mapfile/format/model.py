@@ -33,6 +33,7 @@ from rmw_manycore_py.mapfile.format.values import (
     refusal,
 )
 from rmw_manycore_py.native.enums import Transfer, WaitMode
+from rmw_manycore_py.platform.topology import MACHINE
 from rmw_manycore_py.process.scheduling import MAX_PRIORITY, MIN_PRIORITY, REAL_TIME
 from rmw_manycore_py.ros.domain import MAX_DOMAIN, PLATFORM_NAME
 from rmw_manycore_py.ros.names import MAX_NODE_NAME, MAX_TOPIC_NAME, NAME_PART
@@ -85,7 +86,7 @@ class Section(BaseModel):
 class PlatformSection(Section):
     """The machine: a profile, optionally with other sizes."""
 
-    profile: Literal["host", "coolidge", "bostan"] = Field(
+    profile: Literal["host", "machine", "coolidge", "bostan"] = Field(
         default="host", description="Base profile"
     )
     name: PlatformName | None = Field(
@@ -100,6 +101,14 @@ class PlatformSection(Section):
     smem_size: Annotated[Size, Field(ge=MIN_SMEM_BYTES, le=MAX_SMEM_BYTES)] | None = Field(
         default=None, description="Local memory per cluster, in bytes"
     )
+
+    @model_validator(mode="after")
+    def _check_shape(self) -> Self:
+        for key in ("clusters", "cores_per_cluster"):
+            if self.profile == MACHINE and (found := getattr(self, key)) is not None:
+                expected = f"no {key}: the clusters are those of the machine"
+                raise refusal(expected, found=found, name=key)
+        return self
 
 
 class TopicSection(Section):

@@ -128,8 +128,22 @@ def assign_cpus(
     """Return the host CPU of every used core: nodes, workers, then receive threads.
 
     The bridge may run on any CPU or on those named in the mapfile: its cores get none. Isolated
-    CPUs are only assigned to nodes that name them.
+    CPUs are only assigned to nodes that name them. Cores of a machine have their CPUs.
     """
+    clusters = {core.cluster for core in used}
+    if bridge is not None:
+        clusters |= {core.cluster for lane in bridge.cores for core in lane}
+    receivers = [Core(cluster, RECEIVE_THREAD_CORE) for cluster in sorted(clusters)]
+    cores = [*used, *receivers]
+    fixed = _chosen_cpus(mapfile, used, cpus)
+    own = {core: mapfile.topology.host_cpu(core) for core in cores}
+    of_machine = {core: cpu for core, cpu in own.items() if cpu is not None}
+    stay = {core: cpu for core, cpu in kept.host_cpus.items() if core in cores and cpu in cpus}
+    return assign_host_cpus(cores, {**stay, **fixed, **of_machine}, cpus)
+
+
+def _chosen_cpus(mapfile: Mapfile, used: Sequence[Core], cpus: Sequence[int]) -> dict[Core, int]:
+    """Return the host CPUs that the mapfile names."""
     fixed: dict[Core, int] = {}
     problems: list[Problem] = []
     nameable = sorted({*cpus, *isolated_cpus()})
@@ -140,19 +154,16 @@ def assign_cpus(
     for (name, node), core in zip(mapfile.sections.nodes.items(), used, strict=False):
         if node.host_cpu is None:
             continue
-        if node.host_cpu not in nameable:
-            path = ("nodes", name, "host_cpu")
+        path = ("nodes", name, "host_cpu")
+        own = mapfile.topology.host_cpu(core)
+        if own not in (None, node.host_cpu):
+            expected = f"{own}, which {core} of this machine is"
+            problems.append(mapfile.document.problem(path, expected, str(node.host_cpu)))
+        if own is None and node.host_cpu not in nameable:
             problems.append(mapfile.document.problem(path, usable, str(node.host_cpu)))
         if node.host_cpu != fixed.setdefault(core, node.host_cpu):
             expected = f"{fixed[core]}, as another node on core {core.core} has it"
-            path = ("nodes", name, "host_cpu")
             problems.append(mapfile.document.problem(path, expected, str(node.host_cpu)))
     if problems:
         raise MapfileError(*problems)
-    clusters = {core.cluster for core in used}
-    if bridge is not None:
-        clusters |= {core.cluster for lane in bridge.cores for core in lane}
-    receivers = [Core(cluster, RECEIVE_THREAD_CORE) for cluster in sorted(clusters)]
-    cores = [*used, *receivers]
-    stay = {core: cpu for core, cpu in kept.host_cpus.items() if core in cores and cpu in cpus}
-    return assign_host_cpus(cores, {**stay, **fixed}, cpus)
+    return fixed

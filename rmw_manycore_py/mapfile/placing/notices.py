@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import difflib
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile
     from rmw_manycore_py.mapfile.launch_file import LaunchFile
     from rmw_manycore_py.mapfile.placing.start import NodeStart
+    from rmw_manycore_py.platform.topology import Topology
 
 
 def of_launch(mapfile: Mapfile, launch: LaunchFile | None) -> Iterator[str]:
@@ -39,6 +40,16 @@ def shared_cpus(cores: int, cpus: int) -> Iterator[str]:
         yield (
             f"{cores} cores in use on {cpus} host CPUs: some share a CPU, "
             "so timing is not that of the target"
+        )
+
+
+def unbound_memory(topology: Topology, refusal: Callable[[], str]) -> Iterator[str]:
+    """Yield a notice if clusters are in several NUMA nodes and their memory cannot be."""
+    nodes = {cluster.host.node for cluster in topology.clusters if cluster.host is not None}
+    if len(nodes) > 1 and (reason := refusal()):
+        yield (
+            f"the memory of clusters is not bound to their NUMA nodes (mbind: {reason}); "
+            "a container needs --cap-add SYS_NICE"
         )
 
 

@@ -27,6 +27,7 @@ from rmw_manycore_py.mapfile.placing.notices import (
     overruled_prefixes,
     refused_scheduling,
     shared_cpus,
+    unbound_memory,
     unpublished,
 )
 from rmw_manycore_py.mapfile.placing.placed import place
@@ -39,6 +40,7 @@ from rmw_manycore_py.mapfile.placing.topics import (
     check_types,
     topic_table,
 )
+from rmw_manycore_py.platform.machine.memory_policy import policy_refusal
 from rmw_manycore_py.platform.topology import Core, usable_cpus
 
 
@@ -121,6 +123,7 @@ def _placement(
             *mapfile.notices,
             *of_launch(mapfile, launch),
             *shared_cpus(len(host_cpus), len(cpus)),
+            *unbound_memory(mapfile.topology, policy_refusal),
             *(text for _, texts in rules.values() for text in texts),
             *import_notices,
             *unpublished(mapfile, starts, nodes),

@@ -32,10 +32,13 @@ def as_data(placement: Placement) -> dict[str, Any]:
 def cluster_row(placement: Placement, memory: ClusterMemory) -> dict[str, Any]:
     """Return a cluster and its memory as JSON data."""
     cluster = placement.topology.clusters[memory.cluster - 1]
+    host = cluster.host
+    of_machine = {"host_cpus": list(host.cpus), "numa_node": host.node} if host else {}
     return {
         "cluster": memory.cluster,
         "cores": cluster.cores,
         "reserved_cores": sorted(cluster.reserved),
+        **of_machine,
         "smem_size": memory.smem_size,
         "used": memory.used,
         "topic_dsms": dict(memory.topic_dsms),

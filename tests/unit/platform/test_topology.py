@@ -10,7 +10,6 @@ from rmw_manycore_py.platform.topology import (
     MIB,
     Core,
     assign_host_cpus,
-    cpus_of_list,
     host_smem_size,
     isolated_cpus,
     profile,
@@ -60,19 +59,6 @@ def test_a_cpu_that_was_asked_for_counts_as_busy() -> None:
     used = [Core(1, 1), Core(1, 2), Core(1, 3)]
     assigned = assign_host_cpus(used, {Core(1, 2): 0}, (0, 1, 2))
     assert assigned == {Core(1, 2): 0, Core(1, 1): 1, Core(1, 3): 2}
-
-
-def test_cores_that_are_not_in_a_mapfile_go_round_the_cpus() -> None:
-    coolidge = profile("coolidge")
-    assert coolidge.default_host_cpu(Core(1, 1), (4, 6, 7)) == 6
-    assert coolidge.default_host_cpu(Core(2, 1), (4, 6, 7)) == 7
-
-
-@pytest.mark.parametrize(
-    ("text", "cpus"), [("\n", ()), ("3\n", (3,)), ("0-2,5\n", (0, 1, 2, 5)), ("1,3-4\n", (1, 3, 4))]
-)
-def test_lists_of_cpus_are_those_of_the_kernel(text: str, cpus: tuple[int, ...]) -> None:
-    assert cpus_of_list(text) == cpus
 
 
 def test_isolated_cpus_are_those_that_the_cpuset_has(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.platform.topology import cpus_of_list
+from rmw_manycore_py.platform.machine.sysfs import cpus_of_list
 
 SAME_CPU, SIBLINGS, SAME_L3 = "same CPU", "sibling", "same L3"
 SAME_NODE, OTHER_NODE = "same NUMA node", "other NUMA node"
