@@ -14,6 +14,7 @@ from pathlib import Path
 import posix_ipc
 
 from rmw_manycore_py.cli.common.printing import size_text
+from rmw_manycore_py.cli.doctor.clusters import check_clusters
 from rmw_manycore_py.cli.doctor.daemons import check_daemons
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
 from rmw_manycore_py.cli.doctor.logout import check_logout
@@ -38,6 +39,7 @@ def check_machine() -> Iterator[Finding]:
         yield _user_directory()
     yield _posix_shared_memory()
     yield _cpus()
+    yield from check_clusters()
     yield check_isolation()
     yield check_real_time()
     yield _pidfd()
