@@ -6,9 +6,11 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
+from itertools import cycle
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.platform.topology import Core, Topology
+from rmw_manycore_py.mapfile.communication import Talk, by_communication, talk_of
+from rmw_manycore_py.platform.topology import Topology
 from rmw_manycore_py.profile.model import Profile
 from rmw_manycore_py.ros.names import MAX_NODE_NAME, NAME_PART
 
@@ -16,7 +18,7 @@ _NAME = re.compile(f"/{NAME_PART}(/{NAME_PART})*")
 
 
 def plan_of(profile: Profile, topology: Topology) -> str:
-    """Return a mapfile with a profile's nodes, one core after the other.
+    """Return a mapfile with a profile's nodes; those that exchange most messages share a cluster.
 
     They share cores where the platform has too few.
 
@@ -29,15 +31,28 @@ def plan_of(profile: Profile, topology: Topology) -> str:
     }
     if not processes:
         raise ManycoreError("the profile has no node to place", EXIT_BAD_INPUT)
-    cores = [Core(one.id, core) for one in topology.clusters for core in one.free]
-    is_shared = len(processes) > len(cores)
-    return "\n".join(
-        [*_head(topology.profile, is_shared), *_lines(processes, cores, is_shared), ""]
+    cores = sum(len(cluster.free) for cluster in topology.clusters)
+    per_core = -(-len(processes) // cores)
+    room = {cluster.id: len(cluster.free) * per_core for cluster in topology.clusters}
+    clusters = by_communication([*processes], _talk(profile), room)
+    lines = _lines(processes, clusters, topology if per_core > 1 else None)
+    return "\n".join([*_head(topology.profile, per_core > 1), *lines, ""])
+
+
+def _talk(profile: Profile) -> Talk[str]:
+    names = [node.name for node in profile.nodes]
+    return talk_of(
+        (
+            (names[one.node], one.topic, 1.0 if one.publications is None else one.publications)
+            for one in profile.publishers
+            if one.node is not None and one.publications != 0
+        ),
+        ((names[one.node], one.topic) for one in profile.subscriptions if one.node is not None),
     )
 
 
 def _head(platform: str, is_shared: bool) -> Iterator[str]:
-    yield "# Choose the clusters, or let `manycore advise` choose them."
+    yield "# Nodes that exchange messages share a cluster. `manycore advise` weighs loads, too."
     yield f"platform: {platform}"
     yield "plan: true  # from a profile: each command is the process that was recorded"
     if is_shared:
@@ -45,9 +60,12 @@ def _head(platform: str, is_shared: bool) -> Iterator[str]:
     yield "nodes:"
 
 
-def _lines(processes: dict[str, str | None], cores: list[Core], is_shared: bool) -> Iterator[str]:
-    for number, (name, process) in enumerate(processes.items()):
-        place = cores[number % len(cores)]
-        core = f", core: {place.core}" if is_shared else ""
+def _lines(
+    processes: dict[str, str | None], clusters: dict[str, int], shared: Topology | None
+) -> Iterator[str]:
+    cores = {one.id: cycle(one.free) for one in shared.clusters} if shared else {}
+    for name, process in processes.items():
+        cluster = clusters[name]
+        core = f", core: {next(cores[cluster])}" if cores else ""
         command = json.dumps([process or "unknown"])
-        yield f"  {name}: {{cluster: {place.cluster}{core}, command: {command}}}"
+        yield f"  {name}: {{cluster: {cluster}{core}, command: {command}}}"

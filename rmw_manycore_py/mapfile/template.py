@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, MapfileError, shorten
+from rmw_manycore_py.mapfile.communication import by_communication, talk_of
 from rmw_manycore_py.mapfile.launch_file import LaunchedNode, LaunchFile, read_launch_file
 from rmw_manycore_py.mapfile.placing.launched import program_of
 from rmw_manycore_py.mapfile.placing.parameters import Launched
@@ -47,8 +48,9 @@ def init(
 ) -> str:
     """Return a mapfile with the nodes found in Python files, directories and one launch file.
 
-    Only the clusters are left to fill in. `directory` is the directory of the future mapfile,
-    `arguments` are those of the launch file. A plan has all nodes, also those that cannot run here.
+    Its clusters are a proposal: nodes that exchange messages share one. `directory` is that of the
+    future mapfile, `arguments` are those of the launch file. A plan has all nodes, also those that
+    cannot run here.
     """
     directory = (directory or Path.cwd()).resolve()
     launches = [path for path in sources if path.is_file() and _is_launch_file(path)]
@@ -76,22 +78,29 @@ def init(
     if arguments:
         head.append("launch_arguments:")
         head += [f"  {name}: {json.dumps(value)}" for name, value in arguments.items()]
+    _propose_clusters(mapped, profile(platform), all_fit=plan)
     if plan:
-        _spread(mapped, profile(platform))
         head += [f"# {shorten(notice)}" for notice in unread]
     lines = (line for entry in entries for line in _lines(entry))
     text = "\n".join([*head, "nodes:", *lines]) + "\n"
     return text.replace(f"{directory}{os.sep}", "")  # in comments on missing things
 
 
-def _spread(entries: Sequence[_Entry], topology: Topology) -> None:
-    """Fill one cluster after the other."""
-    free = [cluster.id for cluster in topology.clusters for _ in cluster.free]
-    if len(entries) > len(free):
-        text = f"{len(entries)} nodes are more than the {len(free)} cores of '{topology.profile}'"
+def _propose_clusters(entries: Sequence[_Entry], topology: Topology, *, all_fit: bool) -> None:
+    """Choose clusters by the topics that sources reveal; nodes without room stay in cluster 1."""
+    room = {cluster.id: len(cluster.free) for cluster in topology.clusters}
+    cores = sum(room.values())
+    if all_fit and len(entries) > cores:
+        text = f"{len(entries)} nodes are more than the {cores} cores of '{topology.profile}'"
         raise ManycoreError(f"{text}: choose another --profile", EXIT_BAD_INPUT)
-    for entry, cluster in zip(entries, free, strict=False):
-        entry.cluster = cluster
+    names = [entry.name for entry in entries]
+    talk = talk_of(
+        ((entry.name, topic.lstrip("/"), 1.0) for entry in entries for topic in entry.publish),
+        ((entry.name, topic.lstrip("/")) for entry in entries for topic in entry.subscribe),
+    )
+    clusters = by_communication(names, talk, room)
+    for entry in entries:
+        entry.cluster = clusters.get(entry.name, entry.cluster)
 
 
 def _is_launch_file(path: Path) -> bool:
