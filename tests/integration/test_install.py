@@ -20,6 +20,7 @@ import pytest
 from support import MAPFILES, REPOSITORY
 from support.installs.installing import Installation, build_wheel, run
 from support.processes.platforms import environment, unique_platform
+from support.sources.doc_commands import script
 
 pytestmark = [pytest.mark.integration, pytest.mark.long]
 
@@ -147,3 +148,14 @@ def test_what_pip_builds_runs_a_mapfile(python: Path, tmp_path: Path, start) -> 
     nodes = start([installation.manycore, "run", MAPFILES / "talker_listener.yaml"])
     nodes.wait_for("I heard")
     assert nodes.stop() == 0, nodes
+
+
+@pytest.mark.stress
+def test_the_first_commands_of_the_readme(wheel: Path, tmp_path: Path, platform: str) -> None:
+    """They name no version: pip finds the wheel of the Python at hand."""
+    (tmp_path / "dist").mkdir()
+    shutil.copy(wheel, tmp_path / "dist")
+    typed = script(REPOSITORY / "README.md").partition("make demo")[0]
+    path = f"{sys.base_prefix}/bin:{os.environ['PATH']}"
+    output = run("bash", "-ec", typed, cwd=tmp_path, env=environment(platform, PATH=path))
+    assert "I heard: 'Hello World" in output
