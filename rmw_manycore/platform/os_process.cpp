@@ -40,6 +40,14 @@ std::vector<std::string> command_line() {
   return words;
 }
 
+/// Of Python code that begins with one, in three double quotes.
+std::string docstring(const std::string & code) {
+  const std::string quotes = "\"\"\"";
+  const size_t end = code.find(quotes, quotes.size());
+  const bool begins = code.compare(0, quotes.size(), quotes) == 0 && end != std::string::npos;
+  return begins ? code.substr(quotes.size(), end - quotes.size()) : "";
+}
+
 }  // namespace
 
 FileDescriptor open_pidfd(pid_t pid) {
@@ -69,6 +77,10 @@ std::string program_name() {
   for (size_t i = 1; i < words.size(); ++i) {
     if (words[i] == "-m" && i + 1 < words.size()) {
       return words[i + 1];
+    }
+    if (words[i] == "-c" && i + 1 < words.size()) {
+      const std::string title = docstring(words[i + 1]);
+      return title.empty() ? executable + " -c" : title;
     }
     if (words[i][0] != '-') {
       const std::string script = base_name(words[i]);

@@ -17,7 +17,8 @@ FileDescriptor open_pidfd(pid_t pid);
 /// permitted.
 bool pin_to_cpu(int host_cpu) noexcept;
 
-/// Name of this program, for labels: the script of an interpreter, otherwise the executable.
+/// Name of this program, for labels: the script or module of an interpreter, the docstring of its
+/// command, otherwise the executable.
 std::string program_name();
 
 /// Starts `arguments` as a daemon (own process group, no inherited descriptors) and waits until its

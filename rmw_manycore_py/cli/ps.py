@@ -68,7 +68,8 @@ def _show(row: Row) -> None:
     if "error" in row:
         echo(f"  {row['error']}")
         return
-    table = new_table("node", "#pid", "#cluster", "#core", "#respawns", "state")
+    columns = ("node", "#pid", "#cluster", "#core", "#respawns", "state")
+    table = new_table(*columns, expendable=("pid", "respawns"))
     for node in row["nodes"]:
         numbers = (node["pid"], node["cluster"], node["core"], node["respawns"])
         texts = ("-" if number is None else str(number) for number in numbers)

@@ -10,9 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from support import IS_MANYCORE
+import rmw_manycore_py as manycore
+from support import IS_MANYCORE, wait_until
 from support.peers.programs import forked_manycore
+from support.processes.commands import manycore_command
 from support.processes.program import Program
+from support.samples.entry_points import write_entry_point
 
 pytestmark = [
     pytest.mark.integration,
@@ -91,3 +94,18 @@ def test_a_prefix_that_pins_does_not_move_a_node_of_the_mapfile(run: Run) -> Non
         "two": f"on {CPUS[0]} other nice {NICE}",
         "three": f"on {CPUS[0]} batch nice {min(NICE + 5, 19)}",
     }
+
+
+def test_an_entry_point_is_shown_by_package_and_executable(
+    start: Callable[..., Program], tmp_path: Path, platform: str
+) -> None:
+    write_entry_point(tmp_path)
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text("nodes:\n  eye: {cluster: 1, package: my_robot, executable: detector}\n")
+    run = start(manycore_command("run", mapfile), PYTHONPATH=str(tmp_path))
+    wait_until(lambda: platform in manycore.platforms(), "it runs")
+    wait_until(
+        lambda: "my_robot detector" in {p.program for p in manycore.status(platform).processes},
+        "the node runs",
+    )
+    assert run.stop() == 0

@@ -28,8 +28,8 @@ def at_a_terminal(platform):
     """Return a function that starts a command at a terminal."""
     people = []
 
-    def sit_down(*command: object) -> Person:
-        env = {**environment(platform), "TERM": "xterm"}
+    def sit_down(*command: object, term: str = "xterm") -> Person:
+        env = {**environment(platform), "TERM": term}
         people.append(Person(list(map(str, command)), env))
         return people[-1]
 
@@ -66,6 +66,12 @@ def test_keys_choose_what_a_terminal_shows(talking, at_a_terminal) -> None:
     person.sees("with 'chat'")
     person.type("q")
     person.sees(USUAL_SCREEN)
+    assert person.leaves() == 0
+
+
+def test_a_dumb_terminal_is_printed_to(talking, at_a_terminal) -> None:
+    person = at_a_terminal(*manycore_command("top", "--count", "1"), term="dumb")
+    assert "\x1b" not in person.sees(r"(?s)(.*)/chatter")[1]
     assert person.leaves() == 0
 
 

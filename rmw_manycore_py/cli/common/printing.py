@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from copy import copy
+from dataclasses import replace
 from typing import Any
 
 import click
-from rich.console import Console, RenderableType
+from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.table import Table
 from rich.text import Text
 
@@ -27,6 +29,8 @@ __all__ = [
     "printable",
     "size_text",
 ]
+
+_ANY_WIDTH = 1000  # of what is not for a terminal
 
 # C0 and C1 control characters, line separators, and those that reorder the text around them; not
 # the direction marks (U+200E, U+200F, U+061C), which Arabic and Hebrew texts contain.
@@ -60,11 +64,29 @@ def print_notices(notices: Iterable[str]) -> None:
 
 
 class PlainTable(Table):
-    """Table without lines, whose texts are neither markup nor contain control characters."""
+    """Table without lines, whose texts are neither markup nor contain control characters.
+
+    Where it is too wide, the columns `expendable` go first, in this order.
+    """
+
+    def __init__(self, expendable: Sequence[str]) -> None:
+        super().__init__(box=None, pad_edge=False)
+        self._expendable = expendable
 
     def add_row(self, *cells: RenderableType | None, **options: Any) -> None:
         """Add a row; a `Text` keeps its style."""
         super().add_row(*map(_plain_cell, cells), **options)
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Render the columns for which there is room."""
+        fitted = copy(self)
+        for header in self._expendable:
+            natural = console.measure(fitted, options=options.update_width(_ANY_WIDTH))
+            if natural.maximum <= options.max_width:
+                break
+            kept = (one for one in fitted.columns if one.header != header)
+            fitted.columns = [replace(one, _index=index) for index, one in enumerate(kept)]
+        yield from Table.__rich_console__(fitted, console, options)
 
 
 def _plain_cell(cell: RenderableType | None) -> RenderableType | None:
@@ -73,9 +95,12 @@ def _plain_cell(cell: RenderableType | None) -> RenderableType | None:
     return Text(escaped(cell)) if isinstance(cell, str) else cell
 
 
-def new_table(*columns: str) -> Table:
-    """Return a plain table; columns whose name starts with # are numeric."""
-    table = PlainTable(box=None, pad_edge=False)
+def new_table(*columns: str, expendable: Sequence[str] = ()) -> Table:
+    """Return a plain table; columns whose name starts with # are numeric.
+
+    :param expendable: columns that give way to names in a narrow terminal, the first one first.
+    """
+    table = PlainTable(expendable)
     for column in columns:
         is_number = column.startswith("#")
         table.add_column(column.lstrip("#"), justify="right" if is_number else "left")
@@ -86,7 +111,7 @@ def print_table(table: Table) -> None:
     """Print a table; into a pipe, at its natural width for grep and cut."""
     console = Console()
     if not console.is_terminal:
-        console = Console(width=1000)
+        console = Console(width=_ANY_WIDTH)
         for column in table.columns:
             column.no_wrap = True
     with console.capture() as capture:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections import defaultdict
 from pathlib import Path
 
@@ -25,6 +24,7 @@ from rmw_manycore_py.cli.common.rates import load_rates
 from rmw_manycore_py.cli.map.drawing import drawing_of
 from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
 from rmw_manycore_py.mapfile.placing.show import as_data, rules_in_words
+from rmw_manycore_py.mapfile.programs.executables import command_text
 from rmw_manycore_py.mapping import Facts, facts_of
 from rmw_manycore_py.mapping.rates import TracedFacts
 from rmw_manycore_py.mapping.words import as_data as facts_as_data
@@ -81,10 +81,11 @@ def command(mapfile: Path, trace: Path | None, profile: Path | None, as_json: bo
 
 def _show_nodes(placement: Placement) -> None:
     echo(f"platform {placement.name} ({placement.topology.profile})")
-    table = new_table("node", "#cluster", "#core", "#host CPU", "command")
+    columns = ("node", "#cluster", "#core", "#host CPU", "command")
+    table = new_table(*columns, expendable=("host CPU",))
     for node in placement.nodes:
         place = (str(node.cluster), str(node.core), str(node.host_cpu))
-        table.add_row(node.full_name, *place, shlex.join(node.program) or node.missing)
+        table.add_row(node.full_name, *place, command_text(node.program) or node.missing)
         for core, cpu in node.workers:
             table.add_row("  worker", str(core.cluster), str(core.core), str(cpu), "")
     if placement.bridge:

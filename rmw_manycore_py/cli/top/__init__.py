@@ -109,11 +109,16 @@ def _interact(
     """Run on the terminal; return whether there is a usable one."""
     interaction = Interaction(look_now, period_s, count, choices)
     while True:
-        with single_keys(wanted=sys.stdout.isatty()) as keyboard:
+        with single_keys(wanted=_is_screen()) as keyboard:
             is_stopped = keyboard is not None and interaction.run(keyboard)
         if not is_stopped:
             return keyboard is not None
         os.kill(os.getpid(), signal.SIGSTOP)  # until the shell continues it with fg or bg
+
+
+def _is_screen() -> bool:
+    """Return whether the terminal can be redrawn; a dumb one is printed to."""
+    return sys.stdout.isatty() and not Console().is_dumb_terminal
 
 
 def _row(look: Look) -> dict[str, object]:
@@ -126,7 +131,7 @@ def _row(look: Look) -> dict[str, object]:
 
 
 def _print(look: Look, choices: Choices) -> None:
-    console = Console(width=_PLAIN_WIDTH)
+    console = Console(width=None if sys.stdout.isatty() else _PLAIN_WIDTH)
     with console.capture() as capture:
         console.print(screen(look, choices))
     lines = (line.rstrip() for line in capture.get().splitlines())

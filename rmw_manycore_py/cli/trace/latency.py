@@ -50,7 +50,7 @@ def command(
 ) -> None:
     """Show latency through chains of nodes, hop by hop.
 
-    In microseconds. A chain continues where a node publishes while it handles a message it has
+    A chain continues where a node publishes while it handles a message it has
     taken.
     """
     if live == (file is not None):
@@ -90,6 +90,6 @@ def _show(one: ChainLatency) -> None:
     echo(escaped(one.name))
     table = new_table("  part", "#count", "#p50", "#p99", "#max")
     for part in one.parts:
-        values = (f"{part.quantile(share):.1f}" for share in (0.5, 0.99, 1))
+        values = (f"{part.quantile(share):.1f} us" for share in (0.5, 0.99, 1))
         table.add_row(f"  {part.name}", str(len(part.samples_us)), *values)
     print_table(table)

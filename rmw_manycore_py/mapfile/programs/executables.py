@@ -6,6 +6,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import re
+import shlex
 import shutil
 import sys
 from collections.abc import Sequence
@@ -20,6 +21,8 @@ from rmw_manycore_py.mapfile.programs.entry_script import (
     module_of_script,
 )
 from rmw_manycore_py.ros import ament
+
+_TITLED = re.compile('"""(.*?)"""; ')  # code of an entry point
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,15 @@ def find_executable(package: str, executable: str) -> Program | None:
         if os.path.isfile(path) and os.access(path, os.X_OK):
             return _of_file(path)
     return _entry_point(package, executable)
+
+
+def command_text(command: Sequence[str]) -> str:
+    """Return a command line for reading: an entry point by its package and executable."""
+    words = list(command)
+    for at, code in enumerate(words):
+        if at > 1 and words[at - 1] == "-c" and (title := _TITLED.match(code)):
+            return shlex.join([*words[: at - 2], *title[1].split(), *words[at + 1 :]])
+    return shlex.join(words)
 
 
 def find_component(package: str, plugin: str) -> Program | None:
@@ -177,9 +189,10 @@ def _entry_point(package: str, executable: str) -> Program | None:
     if (script := installed_script(package, executable)) is not None:
         return Program((str(script),), source)
     attribute = entry.attr.split(".")[0]
-    # Like the script that pip would write, without the working directory in sys.path.
+    # Like the script that pip would write, without the working directory in sys.path. The docstring
+    # labels the process.
     code = (
-        "import sys; sys.path[:] = filter(None, sys.path); "
+        f'"""{package} {executable}"""; import sys; sys.path[:] = filter(None, sys.path); '
         f"from {entry.module} import {attribute}; sys.exit({entry.attr}())"
     )
     return Program((sys.executable, "-c", code), source)

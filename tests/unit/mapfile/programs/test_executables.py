@@ -10,7 +10,12 @@ import pytest
 
 from rmw_manycore_py import examples
 from rmw_manycore_py.mapfile import check
-from rmw_manycore_py.mapfile.programs.executables import executables_of, find_executable
+from rmw_manycore_py.mapfile.programs.executables import (
+    command_text,
+    executables_of,
+    find_executable,
+)
+from support.samples.entry_points import write_entry_point
 
 pytestmark = pytest.mark.unit
 
@@ -96,3 +101,17 @@ def test_a_console_script_is_started_by_the_file_that_pip_wrote() -> None:
     program = find_executable("rmw-manycore", "manycore")
     assert program is not None
     assert program.argv == (str(Path(sys.executable).with_name("manycore")),)
+
+
+def test_an_entry_point_without_a_script_is_named_by_package_and_executable(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_entry_point(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    program = find_executable("my_robot", "detector")
+    assert program is not None
+    assert program.source == tmp_path / "my_robot.py"
+    assert command_text(["taskset", "1", *program.argv, "x y"]) == (
+        "taskset 1 my_robot detector 'x y'"
+    )
+    assert command_text(["python3", "-c", "print()"]) == "python3 -c 'print()'"
