@@ -6,7 +6,8 @@
  * Follows Timekeeper::step, ProcessThreads::look, Member::wait_in and Waiter::wait_virtually. Node A
  * publishes at time 0 to node B of another cluster, whose main thread hands the message to its
  * worker threads: they wake each other three times, then the last one publishes to A and to B. A has
- * a timer at 2, B at 1. Worker threads have no seat. KILL=1: B is killed at any of its steps.
+ * a timer at 2, B at 1. Worker threads have no seat. KILL=1: B is killed at any of its steps. The run
+ * starts its successor, C, when it likes; C takes part once it has joined.
  *
  * RUN KILL=0
  * RUN KILL=1
@@ -20,16 +21,20 @@
  * BUG 7: time advances to a due time without a look at wake words
  * BUG 8: a thread is let go while another one runs
  * BUG 9 KILL=1: a process that was let go is waited for though it died
+ * BUG 10 KILL=1: the end of a process is not noted when its successor is started
+ * BUG 11 KILL=1: time advances though a successor has not joined
  */
 #define A 0
 #define B 1
-#define NONE 2
+#define C 2
+#define NONE 3
 #define FOREVER 9
 #define END 2
 #define HOPS 3
 
 mtype = { running, waiting, freed };
 mtype seat[2] = waiting;  /* both wait to start, A first */
+mtype seat_c = freed;
 byte due[2], epoch[2], seen[2], queue[2];
 byte now = 0;
 byte pipe = 0;            /* messages to the receive thread of B's cluster */
@@ -38,6 +43,10 @@ bool woken[2], runs[2];   /* workers of B */
 byte turns[2], hops = 0;
 byte turn = NONE, last = B;
 bool dead = false, over = false;
+bool ended = false;       /* time stands: the run has not started the successor yet */
+bool starts = false;      /* it has, and the timekeeper has not heard of it */
+bool awaits = false;      /* time stands: the successor has not joined */
+bool has_joined = false;
 
 #define is_awake(i) (woken[i] || runs[i])
 #define is_quiet_world \
@@ -152,6 +161,22 @@ proctype Killer() {
   fi
 }
 
+proctype Successor() {
+  seat_c = waiting;
+  (seat_c == running || over);
+  has_joined = true;
+  seat_c = waiting;
+  (over);
+  seat_c = freed
+}
+
+proctype Run() {
+  end:
+  (dead);
+  run Successor();
+  starts = true
+}
+
 #define has_died(i) (i == B && dead)
 
 inline look(which) {
@@ -205,7 +230,8 @@ proctype Timekeeper() {
      :: turn != NONE ->
         if
         :: BUG == 8
-        :: BUG != 8 && seat[turn] != running
+        :: BUG != 8 && turn != C && seat[turn] != running
+        :: turn == C && seat_c != running
         :: BUG != 9 && has_died(turn)
         fi;
         settle_workers();
@@ -215,8 +241,22 @@ proctype Timekeeper() {
         :: BUG != 4 && BUG != 5 && pipe == 0 && !forwards
         fi;
         turn = NONE
-     :: turn == NONE && dead && seat[B] != freed -> seat[B] = freed
-     :: turn == NONE && !(dead && seat[B] != freed) ->
+     :: atomic {
+          starts -> starts = false;
+          ended = false;
+          awaits = true;
+          if
+          :: BUG != 10 -> seat[B] = freed
+          :: else
+          fi
+        }
+     :: turn == NONE && !awaits && dead && seat[B] != freed -> seat[B] = freed; ended = true
+     :: turn == NONE && awaits ->
+        if
+        :: seat_c == waiting -> awaits = false; seat_c = running; turn = C
+        :: BUG == 10 && seat[B] == waiting -> awaits = false; seat[B] = running; turn = B
+        fi
+     :: turn == NONE && !(awaits && BUG != 11) && !ended && !(dead && seat[B] != freed) ->
         if
         :: is_ready((1 - last)) -> let_go((1 - last))
         :: !is_ready((1 - last)) && is_ready(last) -> let_go(last)
@@ -228,6 +268,7 @@ proctype Timekeeper() {
            :: next >= FOREVER || now == END -> over = true
            :: else ->
               atomic {
+                assert(!dead || seat[B] != freed || has_joined);
                 assert(is_quiet_world && (seat[A] != running) && (dead || seat[B] != running));
                 now = next
               }
@@ -245,6 +286,7 @@ init {
     run Worker(1);
     run ReceiveThread();
     run Killer();
+    run Run();
     run Timekeeper()
   }
 }

@@ -24,6 +24,10 @@ std::string read_all(const FileDescriptor & file) {
   return {text.data(), size > 0 ? static_cast<size_t>(size) : 0};
 }
 
+bool has_ended(const ProcessThreads::Files & files) {
+  return files.call && read_all(files.call).empty();
+}
+
 bool contains(const std::vector<pid_t> & all, pid_t one) {
   return std::find(all.begin(), all.end(), one) != all.end();
 }
@@ -100,7 +104,7 @@ void ProcessThreads::list_again() {
     const pid_t tid = std::atoi(entry->d_name);
     const std::string files = directory_ + "/" + entry->d_name;
     const auto known = threads_.find(tid);
-    if (known != threads_.end()) {
+    if (known != threads_.end() && !has_ended(known->second)) {
       now[tid] = std::move(known->second);
     } else if (tid > 0) {
       const auto file = [&](const char * name) {
@@ -119,9 +123,12 @@ ProcessThreads::Look ProcessThreads::look_once(
       continue;
     }
     const std::string text = read_all(files.call);
+    if (text.empty() && files.call) {
+      count_ = 0;  // another thread may have begun since: the list is made again
+      return {false, 0, ""};
+    }
     const Call call = parse(text);
-    const bool has_ended = text.empty() && files.call;
-    if (!has_ended && !is_sleep(call, contains(strict, tid))) {
+    if (!is_sleep(call, contains(strict, tid))) {
       return {false, tid, call.number < 0 ? "" : name_of(call)};
     }
     seen += text + read_all(files.turns);

@@ -14,6 +14,12 @@ namespace manycore {
 /// The threads of another process of this user, as proc(5) shows them.
 class ProcessThreads {
 public:
+  /// Of a thread, until it ends: one that gets the same id later has others.
+  struct Files {
+    FileDescriptor call;   ///< system call that it is in
+    FileDescriptor turns;  ///< times that it was given a CPU
+  };
+
   explicit ProcessThreads(pid_t pid);
 
   /// What a look found.
@@ -31,11 +37,6 @@ public:
   Look look(const std::vector<pid_t> & blocked, const std::vector<pid_t> & strict);
 
 private:
-  struct Files {
-    FileDescriptor call;   ///< system call that it is in
-    FileDescriptor turns;  ///< times that it was given a CPU
-  };
-
   void list_again();
   /// Appends what the threads do to `seen`.
   Look look_once(

@@ -24,6 +24,7 @@
 #include "transport/subscription/subscription_block.hpp"
 #include "transport/subscription/subscription_impl.hpp"
 #include "transport/transfer/transfer.hpp"
+#include "virtual_time/door.hpp"
 
 namespace manycore {
 namespace {
@@ -279,6 +280,9 @@ Process::Process(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Process::~Process() = default;
 
 std::shared_ptr<Process> Process::join(const Placement & placement) {
+  if (const virtual_time::Door * const door = virtual_time::door()) {
+    door->join();
+  }
   Joined & joined = Joined::by_this_process();
   const std::lock_guard<std::mutex> guard(joined.mutex);
   std::weak_ptr<Process> & known = joined.processes[placement.platform];

@@ -28,8 +28,8 @@ struct Door {
   /// False if time is not virtual any more, or the process has not joined.
   bool (*wait)(const Awaited & awaited, int64_t due_ns) noexcept;
   /// Lets the others that are due now go first. An `empty` poll, repeated at the same time, takes
-  /// time: a loop of polls comes to its end.
-  void (*yield)(bool empty) noexcept;
+  /// time: a loop of polls comes to its end. False as wait().
+  bool (*yield)(bool empty) noexcept;
   /// Lets the time pass that this thread has computed since it last waited.
   void (*elapse)() noexcept;
 };
@@ -58,6 +58,11 @@ namespace manycore {
 inline int64_t qos_now_ns() noexcept {
   const virtual_time::Door * const door = virtual_time::door();
   return door == nullptr ? monotonic_ns() : door->now_ns();
+}
+
+/// CLOCK_MONOTONIC at a time of qos_now_ns(), for waits in the kernel.
+inline int64_t kernel_time_of(int64_t qos_ns) noexcept {
+  return virtual_time::door() == nullptr ? qos_ns : monotonic_ns() + (qos_ns - qos_now_ns());
 }
 
 /// Time of a publication, once the time has passed that was spent on it.

@@ -24,10 +24,10 @@ Function * next(const char * name) noexcept {
   return reinterpret_cast<Function *>(dlsym(RTLD_NEXT, name));
 }
 
-/// Nullptr in a process that has not joined.
+/// Nullptr in a process whose time is the wall clock's: it has not joined, or time is over.
 Member * joined() noexcept {
   Member * const member = Member::find();
-  return member != nullptr && member->has_joined() ? member : nullptr;
+  return member != nullptr && member->has_joined() && !member->is_over() ? member : nullptr;
 }
 
 int64_t ns_of(const timespec & time) noexcept { return time.tv_sec * ns_per_s + time.tv_nsec; }
@@ -36,11 +36,22 @@ int64_t ns_of(const timespec & time) noexcept { return time.tv_sec * ns_per_s + 
 /// that follows is taken as one of the difference.
 [[gnu::tls_model("initial-exec")]] thread_local int64_t last_monotonic_ns = 0;
 
-int sleep_for(Member & member, int64_t duration_ns) noexcept {
-  return member.sleep_until(member.now_ns() + std::max<int64_t>(duration_ns, 0)) ? 0 : EINTR;
+int real_sleep(clockid_t clock, int flags, const timespec * request, timespec * remain) {
+  static auto * const real =
+    next<int(clockid_t, int, const timespec *, timespec *)>("clock_nanosleep");
+  return real(clock, flags, request, remain);
 }
 
-/// As nanosleep(): what is left once time is not virtual any more counts as slept.
+/// As clock_nanosleep(). What is left when virtual time ends passes by the wall clock.
+int sleep_for(Member & member, int64_t duration_ns, timespec * remain) {
+  const int64_t due_ns = member.now_ns() + std::max<int64_t>(duration_ns, 0);
+  if (member.sleep_until(due_ns)) {
+    return 0;
+  }
+  const timespec left = manycore::to_timespec(std::max<int64_t>(due_ns - member.now_ns(), 0));
+  return real_sleep(CLOCK_MONOTONIC, 0, &left, remain);
+}
+
 int with_errno(int error) noexcept {
   errno = error;
   return error == 0 ? 0 : -1;
@@ -52,7 +63,7 @@ const Door the_door{
   [](const manycore::virtual_time::Awaited & awaited, int64_t due_ns) noexcept {
     return Member::find()->wait(awaited, due_ns);
   },
-  [](bool empty) noexcept { Member::find()->yield(empty); },
+  [](bool empty) noexcept { return Member::find()->yield(empty); },
   []() noexcept { Member::find()->elapse(); },
 };
 
@@ -103,20 +114,18 @@ INTERPOSED int clock_nanosleep(
   clockid_t clock, int flags, const timespec * request, timespec * remain) {
   Member * const member = joined();
   if (member == nullptr) {
-    static auto * const real =
-      next<int(clockid_t, int, const timespec *, timespec *)>("clock_nanosleep");
-    return real(clock, flags, request, remain);
+    return real_sleep(clock, flags, request, remain);
   }
   int64_t from_ns = 0;
   if ((flags & TIMER_ABSTIME) != 0) {
     from_ns = clock == CLOCK_REALTIME ? manycore::realtime_ns() : last_monotonic_ns;
   }
-  return sleep_for(*member, ns_of(*request) - from_ns);
+  return sleep_for(*member, ns_of(*request) - from_ns, remain);
 }
 
 INTERPOSED int nanosleep(const timespec * request, timespec * remain) {
   if (Member * const member = joined()) {
-    return with_errno(sleep_for(*member, ns_of(*request)));
+    return with_errno(sleep_for(*member, ns_of(*request), remain));
   }
   static auto * const real = next<int(const timespec *, timespec *)>("nanosleep");
   return real(request, remain);
@@ -124,7 +133,7 @@ INTERPOSED int nanosleep(const timespec * request, timespec * remain) {
 
 INTERPOSED int usleep(useconds_t duration_us) {
   if (Member * const member = joined()) {
-    return with_errno(sleep_for(*member, int64_t{duration_us} * 1000));
+    return with_errno(sleep_for(*member, int64_t{duration_us} * 1000, nullptr));
   }
   static auto * const real = next<int(useconds_t)>("usleep");
   return real(duration_us);
@@ -135,7 +144,8 @@ INTERPOSED int select(
   int count, fd_set * readable, fd_set * writable, fd_set * exceptional, timeval * timeout) {
   Member * const member = count == 0 && timeout != nullptr ? joined() : nullptr;
   if (member != nullptr) {
-    return with_errno(sleep_for(*member, timeout->tv_sec * ns_per_s + timeout->tv_usec * 1000));
+    const int64_t duration_ns = timeout->tv_sec * ns_per_s + timeout->tv_usec * 1000;
+    return with_errno(sleep_for(*member, duration_ns, nullptr));
   }
   static auto * const real = next<int(int, fd_set *, fd_set *, fd_set *, timeval *)>("select");
   return real(count, readable, writable, exceptional, timeout);

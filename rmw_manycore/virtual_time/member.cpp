@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <utility>
 
 namespace manycore::virtual_time {
 namespace {
@@ -19,11 +20,12 @@ constexpr int64_t poll_ns = 100'000;
 /// How soon a waiting thread notices that the timekeeper was killed.
 constexpr int64_t look_after_ns = ns_per_s;
 
-/// Frees the thread's seat at its end.
+/// Frees the thread's seat at its end. What the thread waits for later, as destructors of static
+/// objects do, passes in wall time.
 struct ThreadSeat {
   Seat * seat = nullptr;
   Page * page = nullptr;
-  pid_t pid = 0;  ///< a child of fork() inherits the object, not the seat
+  bool is_left = false;
   int64_t last_empty_poll_ns = 0;
   int64_t computed_from_ns = 0;  ///< CPU time of the thread
 
@@ -31,8 +33,9 @@ struct ThreadSeat {
   ThreadSeat(const ThreadSeat &) = delete;
   ThreadSeat & operator=(const ThreadSeat &) = delete;
   ~ThreadSeat() {
-    if (seat != nullptr && pid == getpid()) {
-      seat->state.store(seat_free, std::memory_order_release);
+    is_left = true;
+    if (seat != nullptr) {
+      std::exchange(seat, nullptr)->vacate();
       page->changes.fetch_add(1, std::memory_order_seq_cst);
       futex_wake_one(page->changes);
     }
@@ -41,7 +44,9 @@ struct ThreadSeat {
 
 thread_local ThreadSeat own;
 
+/// A child of fork() inherits neither the thread's seat nor its place in virtual time.
 void leave_in_child() noexcept {
+  own.seat = nullptr;
   if (Member * const member = Member::find()) {
     member->leave();
   }
@@ -96,10 +101,9 @@ void Member::join() noexcept {
 bool Member::has_seat() noexcept { return own.seat != nullptr; }
 
 Seat * Member::seat_of_this_thread() noexcept {
-  if (own.seat == nullptr || own.pid != getpid()) {
+  if (own.seat == nullptr && !own.is_left) {
     own.seat = take_seat();
     own.page = &page_;
-    own.pid = getpid();
     own.computed_from_ns = clock_ns(CLOCK_THREAD_CPUTIME_ID);
   }
   return own.seat;
@@ -108,14 +112,14 @@ Seat * Member::seat_of_this_thread() noexcept {
 Seat * Member::take_seat() noexcept {
   for (uint32_t i = 0; i < seat_capacity; ++i) {
     Seat & seat = page_.seats[i];
-    uint32_t state = seat_free;
-    if (!seat.state.compare_exchange_strong(state, seat_running, std::memory_order_acq_rel)) {
+    int32_t nobody = 0;
+    if (!seat.pid.compare_exchange_strong(nobody, getpid(), std::memory_order_acq_rel)) {
       continue;
     }
-    seat.pid = getpid();
     seat.tid = gettid();
     seat.rank = rank_;
     seat.ordinal = next_ordinal_.fetch_add(1, std::memory_order_relaxed);
+    seat.state.store(seat_running, std::memory_order_release);
     uint32_t count = page_.seat_count.load(std::memory_order_relaxed);
     while (count <= i && !page_.seat_count.compare_exchange_weak(count, i + 1)) {
     }
@@ -126,9 +130,8 @@ Seat * Member::take_seat() noexcept {
 
 /// After the timekeeper was killed, time goes on by itself.
 void Member::end_if_alone() noexcept {
-  if (kill(page_.timekeeper, 0) != 0 && errno == ESRCH && !is_over()) {
-    page_.over_at_ns.store(monotonic_ns(), std::memory_order_relaxed);
-    page_.is_over.store(1, std::memory_order_seq_cst);
+  if (kill(page_.timekeeper, 0) != 0 && errno == ESRCH) {
+    page_.end();
   }
 }
 
@@ -163,13 +166,13 @@ bool Member::wait(const Awaited & awaited, int64_t due_ns) noexcept {
 
 bool Member::sleep_until(int64_t due_ns) noexcept { return wait({no_process, 0, 0}, due_ns); }
 
-void Member::yield(bool empty) noexcept {
+bool Member::yield(bool empty) noexcept {
   int64_t due_ns = now_ns();
   if (empty) {
     due_ns += own.last_empty_poll_ns == due_ns ? poll_ns : 0;
     own.last_empty_poll_ns = due_ns;
   }
-  sleep_until(due_ns);
+  return sleep_until(due_ns);
 }
 
 void Member::elapse() noexcept {

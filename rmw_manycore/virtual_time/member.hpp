@@ -21,13 +21,15 @@ public:
   bool has_joined() const noexcept { return has_joined_.load(std::memory_order_acquire); }
   void join() noexcept;
   void leave() noexcept { has_joined_.store(false, std::memory_order_relaxed); }
+  /// Whether time goes on at the pace of the wall clock.
+  bool is_over() const noexcept { return page_.is_over.load(std::memory_order_seq_cst) != 0; }
 
   /// Whether the calling thread has waited for the timekeeper before.
   static bool has_seat() noexcept;
   bool wait(const Awaited & awaited, int64_t due_ns) noexcept;
   /// False if time stopped being virtual before `due_ns`.
   bool sleep_until(int64_t due_ns) noexcept;
-  void yield(bool empty) noexcept;
+  bool yield(bool empty) noexcept;
   void elapse() noexcept;
 
 private:
@@ -36,7 +38,6 @@ private:
   Seat * seat_of_this_thread() noexcept;
   Seat * take_seat() noexcept;
   bool wait_in(Seat & seat) noexcept;
-  bool is_over() const noexcept { return page_.is_over.load(std::memory_order_seq_cst) != 0; }
   void end_if_alone() noexcept;
 
   const SharedMemory memory_;

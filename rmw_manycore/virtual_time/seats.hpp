@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "platform/clock.hpp"
 #include "platform/futex.hpp"
 
 /// Memory shared by the timekeeper of a run and the processes that live in its time.
@@ -16,27 +17,32 @@ constexpr uint32_t seat_capacity = 2048;
 constexpr int64_t start_ns = 1'000'000'000 * ns_per_s;
 constexpr int64_t never_ns = INT64_MAX;
 
-/// | from    | to      | by                                            |
-/// |---------|---------|-----------------------------------------------|
-/// | free    | running | a thread that waits for the first time        |
-/// | running | waiting | that thread, once it has written its wait     |
-/// | waiting | running | the timekeeper; the thread itself at the end  |
-/// | running | free    | the thread at its end; the timekeeper, when   |
-/// | waiting | free    | the process has died                          |
+/// | from    | to      | by                                               |
+/// |---------|---------|--------------------------------------------------|
+/// | free    | running | a thread that took it, and has written who it is |
+/// | running | waiting | that thread, once it has written its wait        |
+/// | waiting | running | the timekeeper; the thread itself at the end     |
+/// | running | free    | the thread at its end; the timekeeper, when      |
+/// | waiting | free    | the process has died                             |
 enum SeatState : uint32_t { seat_free, seat_running, seat_waiting };
 
 /// A thread's place in the timekeeper's order. The thread writes all but `state` while it runs; the
 /// timekeeper reads them while the thread waits.
 struct alignas(64) Seat {
   FutexWord state;
-  int32_t pid;
-  int32_t tid;
-  uint32_t rank;     ///< order of the program in the run
-  uint32_t ordinal;  ///< order of the thread in its process
-  uint32_t process;  ///< slot of the process whose wake word also ends the wait
+  std::atomic<int32_t> pid;  ///< who takes a seat sets it, from 0: nobody reads what a seat said
+  int32_t tid;               ///< of another thread before
+  uint32_t rank;             ///< order of the program in the run
+  uint32_t ordinal;          ///< order of the thread in its process
+  uint32_t process;          ///< slot of the process whose wake word also ends the wait
   uint32_t word;
   uint32_t seen;  ///< epoch of that word
   int64_t due_ns;
+
+  void vacate() noexcept {
+    state.store(seat_free, std::memory_order_relaxed);
+    pid.store(0, std::memory_order_release);
+  }
 };
 static_assert(sizeof(Seat) == 64 && std::is_standard_layout_v<Seat>);
 
@@ -51,6 +57,13 @@ struct Page {
   /// Virtual nanoseconds per nanosecond of CPU time; 0: callbacks take no time.
   double factor;
   alignas(64) Seat seats[seat_capacity];
+
+  /// Lets time run at the pace of the wall clock, from the first call on.
+  void end() noexcept {
+    int64_t running = 0;
+    over_at_ns.compare_exchange_strong(running, monotonic_ns(), std::memory_order_relaxed);
+    is_over.store(1, std::memory_order_seq_cst);
+  }
 };
 static_assert(std::atomic<int64_t>::is_always_lock_free);
 

@@ -130,6 +130,39 @@ def test_a_node_is_killed_and_starts_again_at_the_same_times(mapfile, log_of) ->
     assert births == [f"born {START_NS + n * NS_PER_S} {START_NS + n * NS_PER_S}" for n in range(4)]
 
 
+def test_a_node_dies_and_starts_again_while_another_one_computes(
+    mapfile, log_of, tmp_path: Path
+) -> None:
+    rules = f", respawn: true, env: {{{timed.BIRTHS}: {tmp_path}/births}}"
+    log = log_of(mapfile("killer", "victim", rules=rules), 1.8)
+    births = [line.split()[1] for line in log["victim"] if line.startswith("born")]
+    assert births == [f"{START_NS}", f"{START_NS + NS_PER_S}"]
+    times = [int(line.split()[2]) - START_NS for line in log["victim"] if "victim" in line]
+    assert times == [n * NS_PER_S // 10 for n in (3, 6, 9, 13, 16)]
+
+
+def test_a_shell_starts_a_node_again_and_again(mapfile, log_of) -> None:
+    file = mapfile("talker", "mortal")
+    start = f"[{sys.executable}, {timed.__file__}, mortal]"
+    command = start[1:-1].replace(",", "")
+    text = file.read_text()
+    assert start in text
+    file.write_text(text.replace(start, f"[sh, -c, 'while :; do {command}; done']"))
+    births = [line.split()[1] for line in log_of(file, 2.5)["mortal"] if line.startswith("born")]
+    assert births == [f"{START_NS + n * NS_PER_S}" for n in range(3)]
+
+
+def test_what_lives_in_wall_time(mapfile, log_of) -> None:
+    log = log_of(mapfile("parent", "stayer"), 1.5)
+    assert log["parent"] == ["child True"]
+    assert log["stayer"] == ["slept True"]
+
+
+def test_a_tool_without_ros_lives_in_virtual_time(mapfile, log_of) -> None:
+    log = log_of(mapfile("talker", "tool"), 1.5)
+    assert log["tool"] == [f"tool {START_NS + n * NS_PER_S // 4}" for n in range(1, 5)]
+
+
 def test_a_shell_starts_a_node(mapfile, log_of) -> None:
     file = mapfile("talker", "echo")
     text = file.read_text()

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <functional>
 #include <future>
@@ -84,6 +85,31 @@ TEST_CASE(
 TEST_CASE("a thread that computes is awake, though another one sleeps") {
   const TwoThreads child(compute, wait_for_another);
   ProcessThreads threads(child.pid());
+  for (int i = 0; i < 1000; ++i) {
+    REQUIRE(!threads.look({}, {}).asleep);
+  }
+}
+
+TEST_CASE("a thread that takes the place of another one is not taken for it") {
+  std::array<int, 2> go{};
+  std::array<int, 2> gone{};
+  REQUIRE(pipe(go.data()) == 0);
+  REQUIRE(pipe(gone.data()) == 0);
+  char byte = 0;
+  const TwoThreads child(
+    [&] {  // as the second one: what it waits for comes when the test has seen it
+      std::thread second([&] { (void)!read(go[0], &byte, 1); });
+      second.join();
+      std::thread third(compute);
+      (void)!write(gone[1], &byte, 1);
+      third.join();
+    },
+    wait_for_another);
+  ProcessThreads threads(child.pid());
+  while (!threads.look({}, {}).asleep) {
+  }
+  REQUIRE(write(go[1], &byte, 1) == 1);
+  REQUIRE(read(gone[0], &byte, 1) == 1);
   for (int i = 0; i < 1000; ++i) {
     REQUIRE(!threads.look({}, {}).asleep);
   }

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 
-#include "platform/clock.hpp"
 #include "platform/error.hpp"
 #include "python/context.hpp"
 #include "python/transport/bindings.hpp"
@@ -20,6 +19,7 @@
 #include "python/transport/subscription.hpp"
 #include "python/transport/type_hash.hpp"
 #include "python/transport/words.hpp"
+#include "virtual_time/door.hpp"
 
 namespace nb = nanobind;
 
@@ -34,7 +34,7 @@ std::optional<int64_t> end_of_turn(
   if (process.placement().wait_mode != WaitMode::spin) {
     return deadline_ns;
   }
-  const int64_t turn_ns = monotonic_ns() + max_spin_ns;
+  const int64_t turn_ns = qos_now_ns() + max_spin_ns;
   return deadline_ns ? std::min(*deadline_ns, turn_ns) : turn_ns;
 }
 
@@ -52,7 +52,7 @@ bool sleep(Process & process, uint32_t seen, const std::optional<int64_t> & dead
     if (PyErr_CheckSignals() != 0) {
       throw nb::python_error();
     }
-    if (deadline_ns && monotonic_ns() >= *deadline_ns) {
+    if (deadline_ns && qos_now_ns() >= *deadline_ns) {
       return false;
     }
   }
@@ -108,7 +108,7 @@ public:
   bool wait(uint32_t seen, std::optional<double> timeout_s) {
     std::optional<int64_t> deadline_ns;
     if (timeout_s) {
-      deadline_ns = monotonic_ns() + static_cast<int64_t>(*timeout_s * ns_per_s);
+      deadline_ns = qos_now_ns() + static_cast<int64_t>(*timeout_s * ns_per_s);
     }
     // Keeps it alive: another thread may close this object.
     const std::shared_ptr<Process> process = member();

@@ -12,7 +12,6 @@
 #include "rmw/common/error.hpp"
 #include "rmw/context/context.hpp"
 #include "rmw/domain_id.h"
-#include "virtual_time/door.hpp"
 
 namespace rmw_manycore {
 namespace {
@@ -108,9 +107,6 @@ rmw_ret_t rmw_init(const rmw_init_options_t * options, rmw_context_t * context) 
   // Implementation
   return rmw_manycore::guarded([&] {
     rmw_manycore::refuse_security(options->security_options);
-    if (const auto * const door = manycore::virtual_time::door()) {
-      door->join();
-    }
     rmw_context_t created = rmw_get_zero_initialized_context();
     created.instance_id = options->instance_id;
     created.implementation_identifier = rmw_manycore::identifier;

@@ -42,10 +42,11 @@ bool has_ended(const FileDescriptor & pidfd) noexcept {
 Timekeeper::Timekeeper(Registry & registry, virtual_time::Page & page)
 : registry_(registry), page_(page) {}
 
-void Timekeeper::Program::become(pid_t process) {
-  pid = process;
-  pidfd = open_pidfd(process);
-  threads.emplace(process);
+Timekeeper::Process::Process(pid_t pid) : pidfd(open_pidfd(pid)), threads(pid) {}
+
+Timekeeper::Process * Timekeeper::Turn::process() const {
+  const auto found = program.processes.find(pid);
+  return found == program.processes.end() ? nullptr : &found->second;
 }
 
 void Timekeeper::run() {
@@ -62,22 +63,19 @@ void Timekeeper::run() {
 /// One step of the order; false if there is nothing to do before a command comes.
 bool Timekeeper::step() {
   if (active_) {
-    settle(*active_, programs_.at(*active_));
+    settle(*active_);
     drain();
     active_.reset();
     return true;
   }
   for (auto & [rank, program] : programs_) {
+    note_ends(program);
     if (program.state == Program::State::starting) {
       await_join(rank, program);
       return true;
     }
     if (program.state == Program::State::ended) {
       return false;
-    }
-    if (program.state == Program::State::joined && has_ended(program.pidfd)) {
-      note_end(program);
-      return true;
     }
   }
   if (Seat * const seat = next_ready()) {
@@ -106,14 +104,15 @@ void Timekeeper::obey(const Command & command) {
   switch (command.kind) {
     case Command::Kind::start: {
       Program & program = programs_[command.rank];
+      note_ends(program);  // of the process before, if nobody has noticed it yet
       program.name = command.name;
-      program.become(command.pid);
+      program.leader = open_pidfd(command.pid);
       program.started_ns = monotonic_ns();
       program.state = Program::State::starting;
       break;
     }
     case Command::Kind::gone:
-      note_end(programs_[command.rank]);
+      note_ends(programs_[command.rank]);
       programs_[command.rank].state = Program::State::gone;
       break;
     case Command::Kind::go:
@@ -132,16 +131,14 @@ void Timekeeper::await_join(uint32_t rank, Program & program) {
   Seat * joining = nullptr;
   for_each_seat([&](Seat & seat) {
     const bool waits = seat.state.load(std::memory_order_acquire) == seat_waiting;
-    joining = waits && seat.rank == rank ? &seat : joining;
+    const bool is_new = waits && seat.rank == rank && program.processes.count(seat.pid) == 0;
+    joining = is_new ? &seat : joining;
   });
   if (joining != nullptr) {
-    if (joining->pid != program.pid) {  // a shell has started it
-      program.become(joining->pid);
-    }
     program.state = Program::State::joined;
     let_go(*joining);
-  } else if (has_ended(program.pidfd)) {
-    note_end(program);
+  } else if (has_ended(program.leader)) {
+    program.state = Program::State::ended;
   } else {
     if (monotonic_ns() - program.started_ns > 2 * report_after_ns) {
       report_still(program.name + " has not called rmw_init: is it a ROS 2 program?");
@@ -150,25 +147,25 @@ void Timekeeper::await_join(uint32_t rank, Program & program) {
   }
 }
 
-/// Waits until no thread of a program that was let go can do anything more at this time.
-void Timekeeper::settle(uint32_t rank, Program & program) {
+/// Waits until no thread of a process that was let go can do anything more at this time.
+void Timekeeper::settle(const Turn & turn) {
   const int64_t started_ns = monotonic_ns();
   int64_t pause_ns = short_pause_ns;
-  while (!is_over_ && program.state == Program::State::joined) {
+  while (!is_over_) {
     const uint32_t seen = page_.changes.load(std::memory_order_seq_cst);
     const int64_t waited_ns = monotonic_ns() - started_ns;
-    if (is_quiet(rank, program, waited_ns > look_after_ns)) {
-      return;
+    if (waited_ns > look_after_ns) {
+      note_ends(turn.program);
     }
-    if (waited_ns > look_after_ns && has_ended(program.pidfd)) {
-      note_end(program);
+    Process * const process = turn.process();
+    if (process == nullptr || is_quiet(turn.pid, *process, waited_ns > look_after_ns)) {
       return;
     }
     if (waited_ns > report_after_ns) {
-      const Members own = members(rank);
-      const auto look = program.threads->look(own.waiting, own.running);
+      const Members own = members(turn.pid);
+      const auto look = process->threads.look(own.waiting, own.running);
       report_still(
-        program.name + (look.doing.empty() ? " computes" : " " + look.doing) +
+        turn.program.name + (look.doing.empty() ? " computes" : " " + look.doing) +
         (look.tid == 0 ? "" : " (thread " + std::to_string(look.tid) + ")"));
     }
     pause(seen, pause_ns);
@@ -176,11 +173,11 @@ void Timekeeper::settle(uint32_t rank, Program & program) {
   }
 }
 
-Timekeeper::Members Timekeeper::members(uint32_t rank) const {
+Timekeeper::Members Timekeeper::members(pid_t pid) const {
   Members found;
   for_each_seat([&](const Seat & seat) {
     const uint32_t state = seat.state.load(std::memory_order_acquire);
-    if (state != seat_free && seat.rank == rank) {
+    if (state != seat_free && seat.pid == pid) {
       (state == seat_waiting ? found.waiting : found.running).push_back(seat.tid);
     }
   });
@@ -190,30 +187,44 @@ Timekeeper::Members Timekeeper::members(uint32_t rank) const {
 /// A thread that was let go and sleeps in a lock waits for others of its process; then one of them
 /// must wait for the timekeeper, or they wait for another process. `looks`: also ask the kernel
 /// about threads that were let go.
-bool Timekeeper::is_quiet(uint32_t rank, Program & program, bool looks) {
-  const Members own = members(rank);
+bool Timekeeper::is_quiet(pid_t pid, Process & process, bool looks) {
+  const Members own = members(pid);
   if (own.waiting.empty() || (!own.running.empty() && !looks)) {
     return false;
   }
-  return program.threads->look(own.waiting, own.running).asleep;
+  return process.threads.look(own.waiting, own.running).asleep;
 }
 
-/// Frees the seats of a dead process and waits until its endpoints are removed, which happens in
-/// wall time: so the others learn of it at this virtual time.
-void Timekeeper::note_end(Program & program) {
-  if (program.state == Program::State::gone || program.pid == 0) {
-    return;
-  }
-  for_each_seat([&](Seat & seat) {
-    if (seat.state.load(std::memory_order_acquire) != seat_free && seat.pid == program.pid) {
-      seat.state.store(seat_free, std::memory_order_release);
+/// Notes which processes of a program have ended. After the last one time stands: the leader starts
+/// another one, or ends.
+void Timekeeper::note_ends(Program & program) {
+  for (auto one = program.processes.begin(); one != program.processes.end();) {
+    if (!has_ended(one->second.pidfd)) {
+      ++one;
+      continue;
     }
-  });
+    note_end(one->first);
+    one = program.processes.erase(one);
+    if (program.processes.empty() && program.state == Program::State::joined) {
+      program.state = Program::State::starting;
+      program.started_ns = monotonic_ns();
+    }
+  }
+}
+
+/// Frees the seats of a dead process, also one that it was taking, and waits until its endpoints
+/// are removed, which happens in wall time: so the others learn of it at this virtual time.
+void Timekeeper::note_end(pid_t pid) {
+  for (Seat & seat : page_.seats) {
+    if (seat.pid == pid) {
+      seat.vacate();
+    }
+  }
   const auto is_listed = [&] {
     bool found = false;
     for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
-      found = found || (registry_.processes().is_live(slot) &&
-                        registry_.processes()[slot].pid == program.pid);
+      found =
+        found || (registry_.processes().is_live(slot) && registry_.processes()[slot].pid == pid);
     }
     return found;
   };
@@ -221,7 +232,6 @@ void Timekeeper::note_end(Program & program) {
   while (is_listed() && monotonic_ns() < until_ns) {
     futex_wait(page_.changes, page_.changes.load(), monotonic_ns() + short_pause_ns);
   }
-  program.state = Program::State::ended;
 }
 
 /// Waits until the receive threads have forwarded what was sent.
@@ -285,7 +295,9 @@ Timekeeper::Seat * Timekeeper::next_ready() {
 
 void Timekeeper::let_go(Seat & seat) {
   last_ = key_of(seat);
-  active_ = seat.rank;
+  Program & program = programs_.at(seat.rank);
+  program.processes.try_emplace(seat.pid, seat.pid);
+  active_.emplace(Turn{program, seat.pid});
   ++steps_;
   seat.state.store(seat_running, std::memory_order_release);
   futex_wake_one(seat.state);
@@ -311,8 +323,7 @@ void Timekeeper::advance() {
 }
 
 void Timekeeper::finish() {
-  page_.over_at_ns.store(monotonic_ns(), std::memory_order_relaxed);
-  page_.is_over.store(1, std::memory_order_seq_cst);
+  page_.end();
   for_each_seat([](Seat & seat) { futex_wake_all(seat.state); });
 }
 

@@ -29,22 +29,35 @@ public:
 private:
   using Seat = virtual_time::Seat;
 
+  /// A process that has joined.
+  struct Process {
+    explicit Process(pid_t pid);
+
+    FileDescriptor pidfd;
+    ProcessThreads threads;
+  };
+
   /// A program of the run, by its rank.
   struct Program {
     enum class State {
-      starting,  ///< time stands until its process joins
+      starting,  ///< time stands until a process of it joins
       joined,
       ended,  ///< time stands until the run says whether it is started again
       gone,
     };
     std::string name;
     State state = State::starting;
-    pid_t pid = 0;
     int64_t started_ns = 0;  ///< CLOCK_MONOTONIC
-    FileDescriptor pidfd;
-    std::optional<ProcessThreads> threads;
+    FileDescriptor leader;   ///< pidfd of the process that the run started; it may be a shell
+    std::map<pid_t, Process> processes;  ///< one, or those that the leader has started
+  };
 
-    void become(pid_t process);
+  /// The process that was let go last.
+  struct Turn {
+    Program & program;
+    pid_t pid;
+
+    Process * process() const;  ///< nullptr once its end was noted
   };
 
   /// The threads of a process that wait for the timekeeper, and those that it let go on.
@@ -57,10 +70,11 @@ private:
   void obey(const Command & command);
   bool step();
   void await_join(uint32_t rank, Program & program);
-  void settle(uint32_t rank, Program & program);
-  bool is_quiet(uint32_t rank, Program & program, bool looks);
-  Members members(uint32_t rank) const;
-  void note_end(Program & program);
+  void settle(const Turn & turn);
+  bool is_quiet(pid_t pid, Process & process, bool looks);
+  Members members(pid_t pid) const;
+  void note_ends(Program & program);
+  void note_end(pid_t pid);
   void drain();
   bool is_drained();
   Seat * next_ready();
@@ -82,8 +96,8 @@ private:
   std::map<uint32_t, Program> programs_;
   std::map<pid_t, ProcessThreads> receive_threads_;
   std::set<std::string> reported_;
-  std::optional<uint32_t> active_;  ///< rank of the program that was let go last
-  uint64_t last_ = 0;               ///< key of the seat that was let go last
+  std::optional<Turn> active_;  ///< until it has settled
+  uint64_t last_ = 0;           ///< key of the seat that was let go last
   uint64_t steps_ = 0;
   int64_t end_ns_ = virtual_time::never_ns;
   bool has_begun_ = false;

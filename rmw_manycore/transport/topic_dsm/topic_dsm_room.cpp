@@ -34,10 +34,9 @@ void TopicDsmWriter::wait_for_progress(uint64_t number) {
   if (is_owed(number)) {
     registry_.tracer().note(TraceKind::blocked, dsm_.endpoint.load(), number);
     leave();  // no other process has to wait for this publisher's phase meanwhile
-    if (const virtual_time::Door * const door = virtual_time::door()) {
-      door->yield(true);
-    } else {
-      futex_wait(dsm_.progress, seen, blocked_until_ns_);
+    const virtual_time::Door * const door = virtual_time::door();
+    if (door == nullptr || !door->yield(true)) {
+      futex_wait(dsm_.progress, seen, kernel_time_of(blocked_until_ns_));
     }
     enter();
   }

@@ -37,6 +37,16 @@ bool any_moved(const std::vector<SeenEpoch> & seen) noexcept {
   });
 }
 
+/// Waits while time is virtual.
+void pass_virtually(const std::vector<SeenEpoch> & seen, std::optional<int64_t> deadline_ns) {
+  const virtual_time::Door * const door = virtual_time::door();
+  while (door != nullptr && !any_moved(seen) && (!deadline_ns || door->now_ns() < *deadline_ns)) {
+    if (!door->yield(true)) {
+      return;
+    }
+  }
+}
+
 }  // namespace
 
 bool wait_for_any(const std::vector<SeenEpoch> & seen, std::optional<int64_t> deadline_ns) {
@@ -48,13 +58,12 @@ bool wait_for_any(const std::vector<SeenEpoch> & seen, std::optional<int64_t> de
     awaited.emplace_back(place.waiter->word_.epoch, place.epoch);
   }
   const CountedSleeper sleeper(counts);
-  const virtual_time::Door * const door = virtual_time::door();
-  while (!any_moved(seen) && (!deadline_ns || qos_now_ns() < *deadline_ns)) {
-    if (door != nullptr) {
-      door->yield(true);
-    } else {
-      futex_wait_any(awaited, deadline_ns);
-    }
+  pass_virtually(seen, deadline_ns);
+  if (deadline_ns) {
+    deadline_ns = kernel_time_of(*deadline_ns);
+  }
+  while (!any_moved(seen) && (!deadline_ns || monotonic_ns() < *deadline_ns)) {
+    futex_wait_any(awaited, deadline_ns);
   }
   return any_moved(seen);
 }

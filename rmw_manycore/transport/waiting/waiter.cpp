@@ -64,14 +64,15 @@ bool Waiter::sleep(uint32_t seen, std::optional<int64_t> deadline_ns, OnSignal o
 
 /// After the end of virtual time the rest passes at the pace of the wall clock.
 bool Waiter::wait_virtually(
-  const virtual_time::Door & door, uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
+  const virtual_time::Door & door, uint32_t seen, std::optional<int64_t> deadline_ns,
+  OnSignal on_signal) noexcept {
   const virtual_time::Awaited awaited{process_, number_, seen};
   while (epoch() == seen && (!deadline_ns || door.now_ns() < *deadline_ns)) {
     if (!door.wait(awaited, deadline_ns.value_or(INT64_MAX))) {
-      const int64_t left_ns = deadline_ns ? *deadline_ns - door.now_ns() : 0;
-      return sleep(
-        seen, deadline_ns ? std::optional(monotonic_ns() + left_ns) : std::nullopt,
-        OnSignal::resume);
+      if (deadline_ns) {
+        deadline_ns = kernel_time_of(*deadline_ns);
+      }
+      return sleep(seen, deadline_ns, on_signal);
     }
   }
   return epoch() != seen;
@@ -79,7 +80,7 @@ bool Waiter::wait_virtually(
 
 bool Waiter::wait(uint32_t seen, std::optional<int64_t> deadline_ns, OnSignal on_signal) noexcept {
   if (const virtual_time::Door * const door = virtual_time::door()) {
-    return wait_virtually(*door, seen, deadline_ns);
+    return wait_virtually(*door, seen, deadline_ns, on_signal);
   }
   if (mode_ == WaitMode::spin) {
     return spin(seen, deadline_ns);

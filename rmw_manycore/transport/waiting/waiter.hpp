@@ -51,7 +51,8 @@ private:
   friend bool wait_for_any(const std::vector<SeenEpoch> &, std::optional<int64_t>);
   bool spin(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept;
   bool wait_virtually(
-    const virtual_time::Door & door, uint32_t seen, std::optional<int64_t> deadline_ns) noexcept;
+    const virtual_time::Door & door, uint32_t seen, std::optional<int64_t> deadline_ns,
+    OnSignal on_signal) noexcept;
   bool sleep(uint32_t seen, std::optional<int64_t> deadline_ns, OnSignal on_signal) noexcept;
   void learn(bool served) noexcept;
 

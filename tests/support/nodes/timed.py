@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 import time
+from pathlib import Path
 from typing import Any
 
 import rclpy
@@ -17,7 +18,11 @@ from rclpy.parameter import Parameter
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
+from rmw_manycore_py.native._transport import Process
+
 KILLED_AT_S = 1.0
+YEAR_2020_S = 1_577_836_800
+BIRTHS = "BIRTHS"  # variable of the environment: the path of a file
 
 
 class Timed(Node):
@@ -119,18 +124,91 @@ class Mortal(Timed):
         self.say("born")
 
 
-KINDS = {kind.__name__.lower(): kind for kind in (Talker, Echo, Server, Asker, Threads, Mortal)}
+class Killer(Timed):
+    """Kills the mortal node at a fixed time, and is not done before that lives again."""
+
+    def __init__(self) -> None:
+        super().__init__("killer")
+        self.create_timer(KILLED_AT_S, self._kill)
+
+    def _kill(self) -> None:
+        victim = _last_born()
+        os.kill(int(victim), signal.SIGKILL)
+        while _last_born() in ("", victim):
+            pass
+        self.say("killed")
+
+
+class Victim(Timed):
+    """Leaves its process id to its killer."""
+
+    def __init__(self) -> None:
+        super().__init__("victim")
+        self.create_timer(0.3, lambda: self.say(self.count()))
+        self.say("born")
+
+
+class Parent(Timed):
+    """Has a child, which lives in wall time."""
+
+    def __init__(self) -> None:
+        super().__init__("parent")
+        self.create_timer(1.0, self._fork)
+
+    def _fork(self) -> None:
+        child = os.fork()
+        if child == 0:
+            print("child", time.time() > YEAR_2020_S, flush=True)
+            os._exit(0)
+        os.waitpid(child, 0)
+
+
+class Stayer(Timed):
+    """Sleeps when virtual time is over."""
+
+    def __init__(self) -> None:
+        super().__init__("stayer")
+
+    def destroy_node(self) -> None:
+        """Sleep first."""
+        begin_s = time.monotonic()
+        time.sleep(0.1)
+        print("slept", time.monotonic() - begin_s >= 0.1, flush=True)
+        super().destroy_node()
+
+
+def _last_born() -> str:
+    return Path(os.environ[BIRTHS]).read_text()
+
+
+def wait_without_ros() -> None:
+    """Wait on the platform as tools do, which know nothing of rclpy."""
+    process = Process(os.environ["MANYCORE_PLATFORM"], label="tool")
+    for _ in range(4):
+        process.wait(process.epoch(), 0.25)
+        print("tool", time.time_ns(), flush=True)
+
+
+CLASSES = (Talker, Echo, Server, Asker, Threads, Mortal, Killer, Victim, Parent, Stayer)
+KINDS = {kind.__name__.lower(): kind for kind in CLASSES}
 
 
 def main() -> None:
     """Spin the node that the first argument names."""
+    if sys.argv[1] == "tool":
+        wait_without_ros()
+        return
+    if sys.argv[1] == "victim":  # before it joins
+        Path(os.environ[BIRTHS]).write_text(str(os.getpid()))
     rclpy.init()
+    node = None
     try:
         node = KINDS[sys.argv[1]]()
         executor = MultiThreadedExecutor(3) if isinstance(node, Threads) else None
         rclpy.spin(node, executor)
     except (KeyboardInterrupt, ExternalShutdownException):
-        pass
+        if isinstance(node, Stayer):
+            node.destroy_node()
 
 
 if __name__ == "__main__":
