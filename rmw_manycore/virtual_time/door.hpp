@@ -19,6 +19,16 @@ struct Awaited {
   uint32_t seen;  ///< the wait ends when its epoch is another one
 };
 
+/// What a thread is about to do when the time before it has passed.
+enum class Step : uint32_t {
+  none,
+  wait,     ///< its callback has ended
+  woken,    ///< look at what has ended its wait
+  timer,    ///< call a timer; subject: its period in ns
+  take,     ///< take a message; subject: the subscription's slot
+  publish,  ///< subject: the publisher's slot
+};
+
 struct Door {
   /// Virtual time, of all clocks.
   int64_t (*now_ns)() noexcept;
@@ -30,8 +40,8 @@ struct Door {
   /// Lets the others that are due now go first. An `empty` poll, repeated at the same time, takes
   /// time: a loop of polls comes to its end. False as wait().
   bool (*yield)(bool empty) noexcept;
-  /// Lets the time pass that this thread has computed since it last waited.
-  void (*elapse)() noexcept;
+  /// Lets the time pass that this thread takes on the platform before a step.
+  void (*elapse)(Step next, uint64_t subject) noexcept;
 };
 
 }  // namespace manycore::virtual_time
@@ -50,6 +60,12 @@ inline const Door * door() noexcept {
   return manycore_virtual_time == nullptr ? nullptr : manycore_virtual_time();
 }
 
+inline void elapse(Step next, uint64_t subject = 0) noexcept {
+  if (const Door * const there = door()) {
+    there->elapse(next, subject);
+  }
+}
+
 }  // namespace manycore::virtual_time
 
 namespace manycore {
@@ -65,20 +81,20 @@ inline int64_t kernel_time_of(int64_t qos_ns) noexcept {
   return virtual_time::door() == nullptr ? qos_ns : monotonic_ns() + (qos_ns - qos_now_ns());
 }
 
-/// Time of a publication, once the time has passed that was spent on it.
-inline int64_t publish_now_ns() noexcept {
-  const virtual_time::Door * const door = virtual_time::door();
-  if (door == nullptr) {
-    return realtime_ns();
-  }
-  door->elapse();
-  return door->now_ns();
-}
-
 /// Clock of message timestamps and lifespans. CLOCK_REALTIME or virtual time.
 inline int64_t stamp_now_ns() noexcept {
   const virtual_time::Door * const door = virtual_time::door();
   return door == nullptr ? realtime_ns() : door->now_ns();
+}
+
+/// Time of a publication, once the time has passed that was spent on it.
+inline int64_t publish_now_ns(uint32_t publisher) noexcept {
+  const virtual_time::Door * const door = virtual_time::door();
+  if (door == nullptr) {
+    return realtime_ns();
+  }
+  door->elapse(virtual_time::Step::publish, publisher);
+  return door->now_ns();
 }
 
 }  // namespace manycore

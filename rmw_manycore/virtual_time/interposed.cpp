@@ -15,6 +15,7 @@
 using manycore::ns_per_s;
 using manycore::virtual_time::Door;
 using manycore::virtual_time::Member;
+using manycore::virtual_time::Step;
 
 namespace {
 
@@ -22,6 +23,13 @@ namespace {
 template<typename Function>
 Function * next(const char * name) noexcept {
   return reinterpret_cast<Function *>(dlsym(RTLD_NEXT, name));
+}
+
+/// Of librcl, which is not behind this library where Python has loaded it.
+template<typename Function>
+Function * in_rcl(const char * name) noexcept {
+  static void * const rcl = dlopen("librcl.so", RTLD_LAZY | RTLD_NOLOAD);
+  return rcl == nullptr ? nullptr : reinterpret_cast<Function *>(dlsym(rcl, name));
 }
 
 /// Nullptr in a process whose time is the wall clock's: it has not joined, or time is over.
@@ -64,7 +72,7 @@ const Door the_door{
     return Member::find()->wait(awaited, due_ns);
   },
   [](bool empty) noexcept { return Member::find()->yield(empty); },
-  []() noexcept { Member::find()->elapse(); },
+  [](Step next, uint64_t subject) noexcept { Member::find()->elapse(next, subject); },
 };
 
 }  // namespace
@@ -95,6 +103,20 @@ INTERPOSED int rcl_enable_ros_time_override(void * clock) {
   }
   static auto * const real = next<int(void *)>("rcl_enable_ros_time_override");
   return real == nullptr ? 1 : real(clock);
+}
+
+/// A callback of a timer begins with it. rcl_timer_call() calls it, too.
+INTERPOSED int rcl_timer_call_with_info(void * timer, void * info) {
+  static auto * const real = in_rcl<int(void *, void *)>("rcl_timer_call_with_info");
+  static auto * const period_of = in_rcl<int(const void *, int64_t *)>("rcl_timer_get_period");
+  if (real == nullptr || period_of == nullptr) {
+    return 1;
+  }
+  int64_t period_ns = 0;
+  if (Member * const member = joined(); member != nullptr && period_of(timer, &period_ns) == 0) {
+    member->elapse(Step::timer, static_cast<uint64_t>(period_ns));
+  }
+  return real(timer, info);
 }
 
 /// Threads that never wait for the timekeeper keep the wall clock: those of libraries wait in locks

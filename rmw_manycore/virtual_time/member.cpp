@@ -26,6 +26,7 @@ struct ThreadSeat {
   Seat * seat = nullptr;
   Page * page = nullptr;
   bool is_left = false;
+  bool is_in_callback = false;
   int64_t last_empty_poll_ns = 0;
   int64_t computed_from_ns = 0;  ///< CPU time of the thread
 
@@ -161,6 +162,7 @@ bool Member::wait(const Awaited & awaited, int64_t due_ns) noexcept {
   seat->word = awaited.word;
   seat->seen = awaited.seen;
   seat->due_ns = due_ns;
+  seat->next = Step::none;
   return wait_in(*seat);
 }
 
@@ -175,7 +177,29 @@ bool Member::yield(bool empty) noexcept {
   return sleep_until(due_ns);
 }
 
-void Member::elapse() noexcept {
+/// Between callbacks, only what begins one takes time.
+void Member::elapse(Step next, uint64_t subject) noexcept {
+  if (page_.is_modelled == 0) {
+    if (next == Step::wait || next == Step::publish) {
+      elapse_by_factor();
+    }
+    return;
+  }
+  const bool begins = next == Step::take || next == Step::timer;
+  if ((!begins && next != Step::woken && !own.is_in_callback) || is_over() || !has_joined()) {
+    return;
+  }
+  own.is_in_callback = begins || next == Step::publish;
+  if (Seat * const seat = seat_of_this_thread()) {
+    seat->process = no_process;
+    seat->due_ns = never_ns;
+    seat->next = next;
+    seat->subject = subject;
+    wait_in(*seat);
+  }
+}
+
+void Member::elapse_by_factor() noexcept {
   if (page_.factor <= 0 || own.seat == nullptr || is_over()) {
     return;
   }

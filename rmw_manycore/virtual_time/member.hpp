@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "platform/shared_memory.hpp"
-#include "virtual_time/door.hpp"
 #include "virtual_time/seats.hpp"
 
 namespace manycore::virtual_time {
@@ -30,7 +29,7 @@ public:
   /// False if time stopped being virtual before `due_ns`.
   bool sleep_until(int64_t due_ns) noexcept;
   bool yield(bool empty) noexcept;
-  void elapse() noexcept;
+  void elapse(Step next, uint64_t subject) noexcept;
 
 private:
   Member(SharedMemory memory, uint32_t rank) noexcept;
@@ -38,6 +37,7 @@ private:
   Seat * seat_of_this_thread() noexcept;
   Seat * take_seat() noexcept;
   bool wait_in(Seat & seat) noexcept;
+  void elapse_by_factor() noexcept;
   void end_if_alone() noexcept;
 
   const SharedMemory memory_;

@@ -6,6 +6,7 @@
 
 #include "platform/clock.hpp"
 #include "platform/futex.hpp"
+#include "virtual_time/door.hpp"
 
 /// Memory shared by the timekeeper of a run and the processes that live in its time.
 namespace manycore::virtual_time {
@@ -38,7 +39,11 @@ struct alignas(64) Seat {
   uint32_t word;
   uint32_t seen;  ///< epoch of that word
   int64_t due_ns;
+  Step next;  ///< unless `none`, the model says when the wait is over
+  uint64_t subject;
 
+  /// The order in which seats that are ready go on.
+  uint64_t key() const noexcept { return uint64_t{rank} << 32 | ordinal; }
   void vacate() noexcept {
     state.store(seat_free, std::memory_order_relaxed);
     pid.store(0, std::memory_order_release);
@@ -56,6 +61,7 @@ struct Page {
   int32_t timekeeper;
   /// Virtual nanoseconds per nanosecond of CPU time; 0: callbacks take no time.
   double factor;
+  uint32_t is_modelled;  ///< callbacks take the time that the model of the platform says
   alignas(64) Seat seats[seat_capacity];
 
   /// Lets time run at the pace of the wall clock, from the first call on.

@@ -18,6 +18,9 @@ VERBS = {
     "move": "rmw_manycore_py.cli.move:command",
     "attach": "rmw_manycore_py.cli.attach:command",
     "stop": "rmw_manycore_py.cli.stop:command",
+    "pause": "rmw_manycore_py.cli.pause:command",
+    "step": "rmw_manycore_py.cli.step:command",
+    "resume": "rmw_manycore_py.cli.resume:command",
     "demo": "rmw_manycore_py.cli.demo:command",
     "create": "rmw_manycore_py.cli.create:command",
     "map": "rmw_manycore_py.cli.map:command",
@@ -49,7 +52,7 @@ VERBS = {
 SECTIONS = {
     "Run": (
         "run", "up", "ps", "logs", "restart", "move", "attach", "stop", "demo", "map", "create",
-        "bridge",
+        "bridge", "pause", "step", "resume",
     ),
     "Look": ("status", "top", "view", "trace"),
     "Plan": ("profile", "simulate", "advise"),

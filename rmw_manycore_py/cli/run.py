@@ -32,6 +32,7 @@ from rmw_manycore_py.trace.files import SUFFIXES
         "manycore run more_nodes.yaml --join",
         "manycore run talker_listener --duration 10 --trace trace.json",
         "manycore run talker_listener --virtual --instant --duration 60",
+        "manycore run whill --profile whill.profile.json --platform coolidge --duration 60",
         "manycore run talker_listener --json | jq 'select(.event == \"output\")'",
     ),
 )
@@ -53,6 +54,9 @@ def command(
     virtual: bool,
     instant: bool,
     factor: float | None,
+    profile: Path | None,
+    platform_name: str,
+    seed: int,
     as_json: bool,
     trace: Path | None,
 ) -> None:
@@ -65,7 +69,7 @@ def command(
 
     In virtual time a run is repeatable and may take less time than --duration says.
     """
-    time = virtual_time(virtual, instant, factor)
+    time = virtual_time(mapfile, virtual, instant, factor, profile, platform_name, seed)
     run, _ = prepared_run(mapfile, joins, nodes, virtual=time)
     report = _print_json if as_json else RunPrinter(run.program_names).report
     sys.exit(run.run(report, duration_s, trace=trace))

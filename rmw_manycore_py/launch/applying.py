@@ -43,7 +43,7 @@ class Applier:
 
     def begin(self, client: Connection, request: Request) -> None:
         """Check a request in a process of its own, whose end is an event of the runner."""
-        if self._runner.is_virtual and not (isinstance(request, Apply) and request.check):
+        if self._runner.timekeeper and not (isinstance(request, Apply) and request.check):
             raise ManycoreError(
                 "the run is in virtual time, which begins with its nodes where they are: "
                 "`manycore stop` it, and `up` again"

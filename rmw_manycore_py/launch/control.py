@@ -24,7 +24,9 @@ from rmw_manycore_py.launch.requests import (
     Attach,
     Follow,
     Move,
+    Pause,
     Restart,
+    Resume,
     State,
     Stop,
     Typing,
@@ -128,6 +130,8 @@ class Control:
                 self._restart(connection, request)
             case Apply() | Move():
                 self._applier.begin(connection, request)
+            case Pause() | Resume():
+                self._keep_time(connection, request)
             case Follow():
                 connection.send({})
                 connection.follows_logs = True
@@ -152,6 +156,22 @@ class Control:
         connection.wants_events = True
         for name in names:
             self._runner.restart_node(name, request.terminal)
+
+    def _keep_time(self, connection: Connection, request: Pause | Resume) -> None:
+        keeper = self._runner.timekeeper
+        if keeper is None:
+            raise ManycoreError(
+                "the time of this run is the wall clock's: only that of `run --virtual` stops"
+            )
+        connection.wants_events = isinstance(request, Pause) or request.has_end
+        if isinstance(request, Pause):
+            keeper.hold()
+        else:
+            keeper.resume(request.for_s, request.topic, request.single)
+        if connection.wants_events:
+            connection.send({})
+        else:
+            connection.finish({})
 
     def _attach(self, connection: Connection, request: Attach) -> None:
         node = self._runner.node(request.node)

@@ -7,6 +7,7 @@ from rmw_manycore_py.launch.events import (
     Ended,
     Event,
     Finished,
+    Held,
     Insisting,
     Notice,
     Restarting,
@@ -22,6 +23,8 @@ def text_of(event: Event) -> str | None:
     """Return the text of an event; None if it is not printed."""
     if isinstance(event, Notice):
         return event.text
+    if isinstance(event, Held):
+        return f"time stands at {event.at_s:.9g} s: {event.why}"
     if isinstance(event, Started):
         return (
             f"{event.node} started: cluster {event.cluster} core {event.core} -> "

@@ -56,6 +56,14 @@ class Notice(Event):
 
 
 @dataclass(frozen=True)
+class Held(Event):
+    """Virtual time stands, `at_s` after its begin, until it is resumed."""
+
+    at_s: float
+    why: str
+
+
+@dataclass(frozen=True)
 class Started(Event):
     """A node has started."""
 
@@ -118,7 +126,7 @@ class Finished(Event):
     exit_status: int
 
 
-KINDS = (Platform, Notice, Started, Stopping, Insisting, Restarting, Ended, Finished)
+KINDS = (Platform, Notice, Held, Started, Stopping, Insisting, Restarting, Ended, Finished)
 
 
 def event_of(data: Mapping[str, Any]) -> Event | None:

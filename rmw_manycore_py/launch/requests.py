@@ -84,6 +84,26 @@ class Follow(_Strict):
     do: Literal["follow"]
 
 
+class Pause(_Strict):
+    """Let virtual time stand."""
+
+    do: Literal["pause"]
+
+
+class Resume(_Strict):
+    """Let virtual time go on, until it stands again if one of these is given."""
+
+    do: Literal["resume"]
+    for_s: Annotated[float, Field(gt=0)] | None = None
+    topic: str = ""
+    single: bool = False  # to what is due next
+
+    @property
+    def has_end(self) -> bool:
+        """Whether time stands again."""
+        return bool(self.for_s or self.topic or self.single)
+
+
 class Attach(_Strict):
     """Forward the terminal of a node; from then on the client sends `Typing`."""
 
@@ -107,7 +127,7 @@ class Typing(_Strict):
             raise _refused(error) from error
 
 
-Request = State | Stop | Restart | Apply | Move | Follow | Attach
+Request = State | Stop | Restart | Apply | Move | Follow | Pause | Resume | Attach
 _REQUESTS: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Field(discriminator="do")])
 
 

@@ -15,6 +15,7 @@ from rmw_manycore_py.errors import EXIT_FAILURE, ManycoreError
 from rmw_manycore_py.launch.events import (
     Ended,
     Event,
+    Held,
     Insisting,
     Notice,
     Output,
@@ -82,9 +83,9 @@ class Runner:
         self.watch(keeper, self._hear_timekeeper)
 
     @property
-    def is_virtual(self) -> bool:
-        """Return whether the nodes run in virtual time."""
-        return self._timekeeper is not None
+    def timekeeper(self) -> Timekeeper | None:
+        """What keeps the time of the nodes; None: it is the wall clock's."""
+        return self._timekeeper
 
     @property
     def is_stopping(self) -> bool:
@@ -329,11 +330,13 @@ class Runner:
     def _hear_timekeeper(self) -> None:
         assert self._timekeeper is not None
         for report in self._timekeeper.read_reports():
+            at, _, why = report.text.partition(" ")
             if report.kind == "end":
                 self._stop("the duration is over")
+            elif report.kind == "held":
+                self.report(Held(int(at) / 1e9, why))
             elif report.kind == "still":
-                at_ms, _, why = report.text.partition(" ")
-                self.report(Notice(f"time stands still at {int(at_ms) / 1000} s: {why}"))
+                self.report(Notice(f"time stands still at {int(at) / 1000} s: {why}"))
             else:
                 self.unwatch(self._timekeeper)
                 self._stop("the timekeeper has ended")

@@ -7,9 +7,11 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
+from pathlib import Path
 
+from rmw_manycore_program import own_program
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.process.parent_death import dies_with_this_process
@@ -20,18 +22,30 @@ _NS_PER_S = 1_000_000_000
 
 
 @dataclass(frozen=True)
+class PlatformModel:
+    """What says how long callbacks take: a profile, on a platform as of `manycore simulate`."""
+
+    mapfile: Path
+    profile: Path
+    platform: str
+    seed: int
+
+
+@dataclass(frozen=True)
 class VirtualTime:
     """How a run keeps virtual time.
 
     :param factor: virtual seconds per second of CPU time of a callback; 0: callbacks take none.
+    :param model: says how long they take instead.
     """
 
     factor: float
+    model: PlatformModel | None = None
 
 
 @dataclass(frozen=True)
 class TimekeeperReport:
-    """What the timekeeper reports: `end` after the duration, or why time stands `still`."""
+    """What the timekeeper reports: `end` after the duration, why time stands `still`, or `held`."""
 
     kind: str
     text: str
@@ -84,6 +98,15 @@ class Timekeeper:
         """Tell that all programs were started; time begins, and ends after `duration_s`."""
         self._tell(f"go {round((duration_s or 0) * _NS_PER_S)}")
 
+    def hold(self) -> None:
+        """Let time stand until it is resumed."""
+        self._tell("hold")
+
+    def resume(self, duration_s: float | None, topic: str, is_single: bool) -> None:
+        """Let time go on: for a duration, until a message on a topic, or to what is due next."""
+        duration_ns = -1 if is_single else round((duration_s or 0) * _NS_PER_S)
+        self._tell(f"resume {duration_ns} {topic}")
+
     def end(self) -> None:
         """Let time go on at the pace of the wall clock: the nodes are stopping."""
         self._tell("over")
@@ -97,14 +120,19 @@ class Timekeeper:
 @contextmanager
 def timekeeper(platform: str, mode: VirtualTime) -> Iterator[Timekeeper]:
     """Start the timekeeper of a platform that exists; end it after the block."""
-    with subprocess.Popen(
-        [f"{sys.prefix}/{_PROGRAM}", platform, str(mode.factor)],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        bufsize=0,
-        start_new_session=True,
-        preexec_fn=dies_with_this_process(),
-    ) as process:
+    with ExitStack() as stack:
+        pipes = () if mode.model is None else stack.enter_context(_model(mode.model))
+        process = stack.enter_context(
+            subprocess.Popen(
+                [f"{sys.prefix}/{_PROGRAM}", platform, str(mode.factor), *map(str, pipes)],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                bufsize=0,
+                pass_fds=pipes,
+                start_new_session=True,
+                preexec_fn=dies_with_this_process(),
+            )
+        )
         assert process.stdout is not None
         first = b""
         while not first.endswith(b"\n") and (byte := process.stdout.read(1)):
@@ -113,6 +141,26 @@ def timekeeper(platform: str, mode: VirtualTime) -> Iterator[Timekeeper]:
             raise ManycoreError("the timekeeper of virtual time did not start")
         try:
             yield Timekeeper(process, first.decode().split()[1])
+        finally:
+            process.kill()
+
+
+@contextmanager
+def _model(model: PlatformModel) -> Iterator[tuple[int, int]]:
+    """Start the model of a platform; yield descriptors to it and from it, for the timekeeper."""
+    arguments = (str(model.mapfile), str(model.profile), model.platform, str(model.seed))
+    with subprocess.Popen(
+        own_program("rmw_manycore_py.prediction.live", *arguments),
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        bufsize=0,
+        start_new_session=True,
+        preexec_fn=dies_with_this_process(),
+    ) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        try:
+            yield process.stdin.fileno(), process.stdout.fileno()
         finally:
             process.kill()
 

@@ -103,6 +103,13 @@ class Simulation:
             if was_enabled:
                 gc.enable()
 
+    def _start(self, source: Timer | Source, delay: float) -> None:
+        """Start what happens by itself.
+
+        :param delay: in ns; of a timer: in periods.
+        """
+        source.start(delay)
+
     def _sample(self, _: object) -> None:
         """Record CPU time and held messages, as the tracer does from time to time."""
         now = self.env.now
@@ -259,7 +266,7 @@ class Simulation:
         self._match(publisher, known)
         happen = publication(self.env, self.delivery, publisher, EventLog.new(False))
         source = Source(self.env, intervals, happen)
-        source.start(self._phase_ns(callback, 4, indices[0]))
+        self._start(source, self._phase_ns(callback, 4, indices[0]))
 
     def _intervals(self, callback: Callback, *keys: int) -> Blocks:
         return self._at_rate(callback.interval_ns, callback.rate_hz or 1.0, *keys)
@@ -290,7 +297,7 @@ class Simulation:
             log = EventLog.new(False) if one.node is None else placed[one.node].other
             happen = publication(self.env, self.delivery, self.publishers[index], log)
             source = Source(self.env, self._at_rate(one.interval_ns, rate_hz, 5, index), happen)
-            source.start(self.random(11, index).random() * 1e9 / rate_hz)
+            self._start(source, self.random(11, index).random() * 1e9 / rate_hz)
 
     # -- executors
 
@@ -339,10 +346,10 @@ class Simulation:
         elif callback.kind == "timer" and (period_ns := period_of(callback)):
             timer = Timer(self.env, period_ns, executor, work)
             self.timers[index] = timer
-            timer.start(self.random(7, index).random())
+            self._start(timer, self.random(7, index).random())
         else:
             source = Source(self.env, self._intervals(callback, 8, index), request(executor, work))
-            source.start(self._phase_ns(callback, 9, index))
+            self._start(source, self._phase_ns(callback, 9, index))
 
     def _shares_of(self, callback: Callback) -> dict[int, float]:
         """Return publications per execution, where the profile has rates only."""

@@ -108,6 +108,7 @@ class Demand:
             for one in callback.publishes
         ]
         self._rarest = min((share for _, share, _ in self._outputs), default=1.0)
+        self.always_publishes = self._rarest >= 1.0
         self.next = self._endless(self._any)
         self.next_publishing = self._endless(self._publishing)
         self.next_silent = self._endless(self._silent)

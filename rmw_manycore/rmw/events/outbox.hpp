@@ -19,6 +19,7 @@ public:
   : publisher_(std::move(publisher)), topic_(std::move(topic)), thread_(thread) {}
 
   manycore::Publisher & transport() const noexcept { return *publisher_; }
+  uint32_t slot() const noexcept { return publisher_->slot(); }
 
   /// As manycore::Publisher.
   manycore::Draft draft(size_t size_bytes) { return publisher_->draft(size_bytes); }

@@ -18,7 +18,7 @@ rmw_ret_t rmw_send_request(
   return rmw_manycore::guarded([&] {
     auto & asking = rmw_manycore::Client::of(client);
     const rmw_manycore::Cdr & cdr = asking.type().request;
-    const int64_t now_ns = manycore::publish_now_ns();
+    const int64_t now_ns = manycore::publish_now_ns(asking.requests().slot());
     manycore::Draft draft = asking.requests().draft(cdr.size_bound(ros_request));
     const size_t size = cdr.serialize(ros_request, draft.data(), draft.capacity());
     const manycore::Correlation correlation = asking.next_request();

@@ -18,7 +18,7 @@ rmw_ret_t rmw_send_response(
   return rmw_manycore::guarded([&] {
     auto & serving = rmw_manycore::Service::of(service);
     const rmw_manycore::Cdr & cdr = serving.type().response;
-    const int64_t now_ns = manycore::publish_now_ns();
+    const int64_t now_ns = manycore::publish_now_ns(serving.replies().slot());
     manycore::Draft draft = serving.replies().draft(cdr.size_bound(ros_response));
     const size_t size = cdr.serialize(ros_response, draft.data(), draft.capacity());
     serving.replies().publish(

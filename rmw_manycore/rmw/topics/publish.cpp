@@ -29,7 +29,7 @@ rmw_ret_t rmw_publish(
   // Implementation: serializes directly into the topic DSM
   return rmw_manycore::guarded([&] {
     Publisher & sender = Publisher::of(publisher);
-    const int64_t now_ns = manycore::publish_now_ns();
+    const int64_t now_ns = manycore::publish_now_ns(sender.outbox().slot());
     trace_publish(publisher, ros_message, now_ns);
     manycore::Draft draft = sender.outbox().draft(sender.cdr().size_bound(ros_message));
     const size_t size = sender.cdr().serialize(ros_message, draft.data(), draft.capacity());
@@ -48,7 +48,7 @@ rmw_ret_t rmw_publish_serialized_message(
   // Implementation
   return rmw_manycore::guarded([&] {
     rmw_manycore::Outbox & outbox = Publisher::of(publisher).outbox();
-    const int64_t now_ns = manycore::publish_now_ns();
+    const int64_t now_ns = manycore::publish_now_ns(outbox.slot());
     trace_publish(publisher, serialized_message, now_ns);
     const size_t size = serialized_message->buffer_length;
     manycore::Draft draft = outbox.draft(size);

@@ -70,7 +70,7 @@ void let_others_go_first(const Waited & waited, bool poll) {
   if (door == nullptr) {
     return;
   }
-  door->elapse();
+  door->elapse(manycore::virtual_time::Step::wait, 0);
   const bool is_any_ready = waited.any_ready();
   if (poll || is_any_ready) {
     door->yield(!is_any_ready);
@@ -110,6 +110,7 @@ rmw_ret_t rmw_wait(
     if (!poll && !waited.any_ready()) {
       ended =
         rmw_manycore::sleep_until_ready(sleeper, waited, rmw_manycore::deadline_of(wait_timeout));
+      manycore::virtual_time::elapse(manycore::virtual_time::Step::woken);
     }
     const bool some_ready = waited.keep_ready();
     tracer.note(manycore::TraceKind::wait_end, manycore::nothing, 0, some_ready ? 1 : 0);

@@ -21,6 +21,8 @@ Publisher::~Publisher() {
 
 const Gid & Publisher::gid() const noexcept { return impl_->entry.gid; }
 
+uint32_t Publisher::slot() const noexcept { return impl_->slot; }
+
 const Qos & Publisher::qos() const noexcept { return impl_->entry.qos; }
 
 Draft Publisher::draft(size_t size_bytes) {

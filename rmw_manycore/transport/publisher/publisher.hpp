@@ -23,6 +23,8 @@ public:
   ~Publisher();
 
   const Gid & gid() const noexcept;
+  /// Of its row in the registry.
+  uint32_t slot() const noexcept;
   const Qos & qos() const noexcept;
   Transfer transfer() const noexcept;
 

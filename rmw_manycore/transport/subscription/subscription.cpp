@@ -90,6 +90,10 @@ Watchers & Subscription::watchers() noexcept { return impl_->header.watchers; }
 std::optional<Claim> Subscription::claim() {
   Impl & impl = *impl_;
   impl.membership.require();
+  const virtual_time::Door * const door = virtual_time::door();
+  if (door != nullptr && impl.finder.has_records()) {
+    door->elapse(virtual_time::Step::take, impl.slot);
+  }
   FinishedPublishers finished(impl);
   std::unique_lock<HandoverMutex> lock(impl.mutex);
   const LossNotice losses(impl);

@@ -22,6 +22,11 @@ Command parse(const std::string & line) {
   } else if (verb == "gone") {
     command.kind = Command::Kind::gone;
     words >> command.rank;
+  } else if (verb == "hold") {
+    command.kind = Command::Kind::hold;
+  } else if (verb == "resume") {
+    command.kind = Command::Kind::resume;
+    words >> command.duration_ns >> command.name;
   } else if (verb == "go") {
     command.kind = Command::Kind::go;
     words >> command.duration_ns;

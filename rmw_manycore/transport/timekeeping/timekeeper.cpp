@@ -27,11 +27,6 @@ constexpr int64_t report_after_ns = 5 * ns_per_s;
 /// How long the rows of a dead process may stay in the registry.
 constexpr int64_t reaping_ns = 2 * ns_per_s;
 
-/// The order in which seats that are ready go on.
-uint64_t key_of(const virtual_time::Seat & seat) noexcept {
-  return uint64_t{seat.rank} << 32 | seat.ordinal;
-}
-
 bool has_ended(const FileDescriptor & pidfd) noexcept {
   pollfd readable{pidfd.get(), POLLIN, 0};
   return !pidfd || poll(&readable, 1, 0) > 0;
@@ -39,8 +34,8 @@ bool has_ended(const FileDescriptor & pidfd) noexcept {
 
 }  // namespace
 
-Timekeeper::Timekeeper(Registry & registry, virtual_time::Page & page)
-: registry_(registry), page_(page) {}
+Timekeeper::Timekeeper(Registry & registry, virtual_time::Page & page, PlatformModel * model)
+: registry_(registry), page_(page), model_(model) {}
 
 Timekeeper::Process::Process(pid_t pid) : pidfd(open_pidfd(pid)), threads(pid) {}
 
@@ -53,7 +48,7 @@ void Timekeeper::run() {
   while (!is_over_) {
     take_commands();
     const uint32_t seen = page_.changes.load(std::memory_order_seq_cst);
-    if (!has_begun_ || is_frozen_ || !step()) {
+    if (!has_begun_ || is_frozen_ || is_held_ || !step()) {
       pause(seen, idle_ns);
     }
   }
@@ -65,7 +60,11 @@ bool Timekeeper::step() {
   if (active_) {
     settle(*active_);
     drain();
+    ask_model();
     active_.reset();
+    if (!stop_topic_.empty() && published() != published_before_) {
+      hold(stop_topic_ + " was published");
+    }
     return true;
   }
   for (auto & [rank, program] : programs_) {
@@ -118,6 +117,12 @@ void Timekeeper::obey(const Command & command) {
     case Command::Kind::go:
       has_begun_ = true;
       end_ns_ = command.duration_ns > 0 ? virtual_time::start_ns + command.duration_ns : never_ns;
+      break;
+    case Command::Kind::hold:
+      hold("paused");
+      break;
+    case Command::Kind::resume:
+      resume(command.duration_ns, command.name);
       break;
     case Command::Kind::over:
       is_over_ = true;
@@ -263,6 +268,9 @@ bool Timekeeper::is_drained() {
 }
 
 bool Timekeeper::is_ready(const Seat & seat) {
+  if (seat.next != virtual_time::Step::none) {
+    return false;
+  }
   if (seat.due_ns <= page_.now_ns.load(std::memory_order_relaxed)) {
     return true;
   }
@@ -282,11 +290,11 @@ Timekeeper::Seat * Timekeeper::next_ready() {
     if (seat.state.load(std::memory_order_acquire) != seat_waiting || !is_ready(seat)) {
       return;
     }
-    const uint64_t key = key_of(seat);
-    if (first == nullptr || key < key_of(*first)) {
+    const uint64_t key = seat.key();
+    if (first == nullptr || key < first->key()) {
       first = &seat;
     }
-    if (key > last_ && (following == nullptr || key < key_of(*following))) {
+    if (key > last_ && (following == nullptr || key < following->key())) {
       following = &seat;
     }
   });
@@ -294,7 +302,7 @@ Timekeeper::Seat * Timekeeper::next_ready() {
 }
 
 void Timekeeper::let_go(Seat & seat) {
-  last_ = key_of(seat);
+  last_ = seat.key();
   Program & program = programs_.at(seat.rank);
   program.processes.try_emplace(seat.pid, seat.pid);
   active_.emplace(Turn{program, seat.pid});
@@ -303,20 +311,36 @@ void Timekeeper::let_go(Seat & seat) {
   futex_wake_one(seat.state);
 }
 
-/// Nothing can happen at this time any more: on to when the next wait is due.
-void Timekeeper::advance() {
+int64_t Timekeeper::next_due_ns() const {
   int64_t next_ns = never_ns;
   for_each_seat([&](const Seat & seat) {
     if (seat.state.load(std::memory_order_acquire) == seat_waiting) {
       next_ns = std::min(next_ns, seat.due_ns);
     }
   });
+  return next_ns;
+}
+
+/// Nothing can happen at this time any more: on to when the next wait is due.
+void Timekeeper::advance() {
+  const int64_t next_ns = next_due_ns();
+  if (model_ != nullptr && advance_model(std::min({next_ns, end_ns_, stop_ns_}))) {
+    return;
+  }
+  if (stop_ns_ < std::min(next_ns, end_ns_)) {
+    page_.now_ns.store(stop_ns_, std::memory_order_release);
+    hold("the step is over");
+    return;
+  }
   if (end_ns_ <= next_ns && end_ns_ != never_ns) {
     page_.now_ns.store(end_ns_, std::memory_order_release);
     is_frozen_ = true;
     report("end", std::to_string(steps_));
   } else if (next_ns != never_ns) {
     page_.now_ns.store(next_ns, std::memory_order_release);
+    if (is_single_) {
+      hold("something is due");
+    }
   } else {
     pause(page_.changes.load(std::memory_order_seq_cst), idle_ns);  // something from outside
   }

@@ -11,6 +11,7 @@
 #include "platform/process_threads.hpp"
 #include "transport/registry/registry.hpp"
 #include "transport/timekeeping/commands.hpp"
+#include "transport/timekeeping/platform_model.hpp"
 #include "virtual_time/door.hpp"
 #include "virtual_time/seats.hpp"
 
@@ -21,7 +22,8 @@ namespace manycore {
 /// (docs/design/virtual_time.md). The only writer of the time. Model: docs/model/virtual_time.pml.
 class Timekeeper {
 public:
-  Timekeeper(Registry & registry, virtual_time::Page & page);
+  /// `model`: of the platform; nullptr: callbacks take what the page says.
+  Timekeeper(Registry & registry, virtual_time::Page & page, PlatformModel * model);
 
   /// Runs until told that it is over; then time goes on at the pace of the wall clock.
   void run();
@@ -80,8 +82,15 @@ private:
   Seat * next_ready();
   bool is_ready(const Seat & seat);
   void let_go(Seat & seat);
+  void ask_model();
+  std::string words_of(const Seat & seat) const;
+  int64_t next_due_ns() const;
   void advance();
+  bool advance_model(int64_t until_ns);
   void finish();
+  void hold(const std::string & why);
+  void resume(int64_t duration_ns, const std::string & topic);
+  uint64_t published() const;
 
   /// Sleeps until a seat changes after `seen`, at most `ns`; takes commands.
   void pause(uint32_t seen, int64_t ns);
@@ -92,6 +101,9 @@ private:
 
   Registry & registry_;
   virtual_time::Page & page_;
+  PlatformModel * const model_;
+  std::map<uint32_t, pid_t> asked_;  ///< seats whose threads the model has in work
+  bool is_model_waiting_ = false;    ///< for the thread that it was done with
   CommandInput commands_;
   std::map<uint32_t, Program> programs_;
   std::map<pid_t, ProcessThreads> receive_threads_;
@@ -100,8 +112,13 @@ private:
   uint64_t last_ = 0;           ///< key of the seat that was let go last
   uint64_t steps_ = 0;
   int64_t end_ns_ = virtual_time::never_ns;
+  int64_t stop_ns_ = virtual_time::never_ns;  ///< time stands then, until it is resumed
+  std::string stop_topic_;                    ///< or when something is published; empty: none
+  uint64_t published_before_ = 0;
   bool has_begun_ = false;
   bool is_frozen_ = false;  ///< the end of the duration was reached
+  bool is_held_ = false;    ///< at the request of the user
+  bool is_single_ = false;  ///< time stands after its next jump
   bool is_over_ = false;
 };
 

@@ -8,6 +8,7 @@
 
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
+#include "virtual_time/door.hpp"
 
 namespace manycore {
 
@@ -127,7 +128,7 @@ void Tracer::record(TraceKind kind, uint32_t endpoint, uint64_t number, uint64_t
   if (side_.is_inherited()) {
     return;
   }
-  TraceEvent event{monotonic_ns(), number, value, endpoint, 0, kind};
+  TraceEvent event{qos_now_ns(), number, value, endpoint, 0, kind};
   ThreadRing * const ring = ring_of_this_thread();
   if (ring == nullptr) {
     return;
@@ -159,7 +160,7 @@ void Tracer::note_other(
     return;
   }
   if (ThreadRing * const ring = ring_of_this_thread()) {
-    ring->file->push(ring->writer, {monotonic_ns(), number, value, index, step, kind});
+    ring->file->push(ring->writer, {qos_now_ns(), number, value, index, step, kind});
   }
 }
 

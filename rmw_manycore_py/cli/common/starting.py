@@ -11,11 +11,15 @@ from typing import Any
 import click
 
 from rmw_manycore_py.cli.common.finite_range import FiniteRange
+from rmw_manycore_py.cli.common.options import number_option
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.platform import occupied_cores
 from rmw_manycore_py.launch.run import Mode, Run
-from rmw_manycore_py.launch.timekeeper import VirtualTime
+from rmw_manycore_py.launch.timekeeper import PlatformModel, VirtualTime
 from rmw_manycore_py.mapfile import Mapfile, Placement, load_mapfile, resolve
+from rmw_manycore_py.prediction import require_simpy
+from rmw_manycore_py.prediction.target_file import target_named
+from rmw_manycore_py.profile.files import load
 
 
 def starting_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -53,7 +57,7 @@ def prepared_run(
 
 
 def virtual_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add --virtual, --instant and --factor to a command."""
+    """Add --virtual and how long callbacks take to a command."""
     virtual = click.option(
         "--virtual",
         is_flag=True,
@@ -68,14 +72,45 @@ def virtual_options(command: Callable[..., Any]) -> Callable[..., Any]:
         metavar="F",
         help="In virtual time, callbacks take F times their CPU time; 1 by default.",
     )
-    return virtual(instant(factor(command)))
+    profile = click.option(
+        "--profile",
+        type=click.Path(exists=True, dir_okay=False, path_type=Path),
+        help="In virtual time, callbacks take what this profile says, on the --platform.",
+    )
+    platform = click.option(
+        "--platform",
+        "platform_name",
+        default="host",
+        show_default=True,
+        metavar="NAME",
+        help="With --profile: host, coolidge, bostan, or a file, as of manycore simulate.",
+    )
+    seed = number_option(
+        "--seed", within=(0, None), default=0, help="With --profile: seed of the random numbers."
+    )
+    return virtual(instant(factor(profile(platform(seed(command))))))
 
 
-def virtual_time(virtual: bool, instant: bool, factor: float | None) -> VirtualTime | None:
+def virtual_time(
+    mapfile: Path,
+    virtual: bool,
+    instant: bool,
+    factor: float | None,
+    profile: Path | None,
+    platform_name: str,
+    seed: int,
+) -> VirtualTime | None:
     """Return what the options of `virtual_options` ask for."""
-    if instant and factor is not None:
-        raise click.UsageError("--instant and --factor exclude each other.")
-    if not (virtual or instant or factor is not None):
+    given = {"--instant": instant, "--factor": factor is not None, "--profile": bool(profile)}
+    names = [name for name, is_given in given.items() if is_given]
+    if len(names) > 1:
+        raise click.UsageError(f"{' and '.join(names)} exclude each other.")
+    if profile is not None:
+        require_simpy()
+        target_named(platform_name)
+        load(profile)
+        return VirtualTime(0.0, PlatformModel(mapfile, profile, platform_name, seed))
+    if not (virtual or names):
         return None
     return VirtualTime(0.0 if instant else factor or 1.0)
 

@@ -177,6 +177,38 @@ class Stayer(Timed):
         super().destroy_node()
 
 
+class Camera(Timed):
+    """Publishes when its timer's callback began."""
+
+    def __init__(self) -> None:
+        super().__init__("camera")
+        self._publisher = self.create_publisher(String, "image", 10)
+        self.create_timer(0.1, self._take)
+
+    def _take(self) -> None:
+        self._publisher.publish(String(data=str(self.get_clock().now().nanoseconds)))
+
+
+class Filter(Timed):
+    """Publishes what it hears."""
+
+    def __init__(self) -> None:
+        super().__init__("filter")
+        publisher = self.create_publisher(String, "small", 10)
+        self.create_subscription(String, "image", publisher.publish, 10)
+
+
+class Sink(Timed):
+    """Prints how long what it hears has taken, in us."""
+
+    def __init__(self) -> None:
+        super().__init__("sink")
+        self.create_subscription(String, "small", self._hear, 10)
+
+    def _hear(self, heard: String) -> None:
+        print((self.get_clock().now().nanoseconds - int(heard.data)) / 1e3, flush=True)
+
+
 def _last_born() -> str:
     return Path(os.environ[BIRTHS]).read_text()
 
@@ -189,7 +221,10 @@ def wait_without_ros() -> None:
         print("tool", time.time_ns(), flush=True)
 
 
-CLASSES = (Talker, Echo, Server, Asker, Threads, Mortal, Killer, Victim, Parent, Stayer)
+CLASSES = (
+    *(Talker, Echo, Server, Asker, Threads, Mortal, Killer, Victim, Parent, Stayer),
+    *(Camera, Filter, Sink),
+)
 KINDS = {kind.__name__.lower(): kind for kind in CLASSES}
 
 

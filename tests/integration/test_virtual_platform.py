@@ -1,0 +1,85 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Callbacks of nodes in virtual time take as long as the simulator says; time stops when asked."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from rmw_manycore_py.mapfile import load_mapfile, resolve
+from rmw_manycore_py.prediction import predict, sites_of
+from rmw_manycore_py.prediction.target_file import target_named
+from rmw_manycore_py.profile.files import save
+from support import IS_MANYCORE
+from support.nodes import timed
+from support.processes.commands import manycore_command
+from support.samples.profiles import pipeline
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
+]
+
+MAPFILE = """
+platform: coolidge
+allow_shared_cores: true
+nodes:
+  camera: {{command: [{node}, camera], cluster: 1, core: 1}}
+  filter: {{command: [{node}, filter], cluster: {cluster}, core: 1}}
+  sink: {{command: [{node}, sink], cluster: 1, core: 2}}
+"""
+# The camera publishes 1 ms after its begin; the prediction counts from there.
+BEFORE_US = 1000
+# Cluster of the filter, and speed of the cores. In cluster 1 it shares a core with the camera.
+CASES = {"across": (2, 1.0), "shared": (1, 1.0), "slow": (2, 0.5)}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_chain_takes_what_the_simulator_says(case: str, tmp_path: Path, start) -> None:
+    cluster, speed = CASES[case]
+    mapfile, profile, platform = (tmp_path / name for name in ("map.yaml", "p.json", "target.yaml"))
+    node = f"{sys.executable}, {timed.__file__}"
+    mapfile.write_text(MAPFILE.format(node=node, cluster=cluster))
+    save(pipeline(), profile)
+    parameters = f"{{speed: {{value: {speed}, source: chosen}}}}"
+    platform.write_text(f"base: coolidge\nparameters: {parameters}")
+    model = ("--profile", profile, "--platform", platform)
+    run = start(manycore_command("run", mapfile, "--virtual", *model, "--duration", "2", "--json"))
+    run.wait_for(r'"event": "finished"')
+    assert run.wait() == 0
+    events = map(json.loads, run.output.splitlines())
+    found_us = [float(one["line"]) for one in events if one["event"] == "output"]
+    assert len(found_us) == 19
+    predicted = predict(
+        sites_of(resolve(load_mapfile(mapfile))),
+        pipeline(),
+        target_named(str(platform)),
+        duration_s=2.0,
+        chains=[("/image", "/small")],
+    )
+    expected_us = predicted.chains[0].quantile_us(0.5) + BEFORE_US / speed
+    assert found_us == pytest.approx([expected_us] * 19, rel=0.001)
+
+
+def test_time_stands_and_goes_on_when_asked(tmp_path: Path, start, manycore) -> None:
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text(MAPFILE.format(node=f"{sys.executable}, {timed.__file__}", cluster=1))
+    run = start(manycore_command("run", mapfile, "--virtual", "--instant"))
+    run.wait_for("sink.*0.0")
+    assert "s: paused" in manycore("pause")
+
+    def stopped_at_s(*options: str) -> float:
+        text = manycore("step", *options)
+        return float(text.partition("time stands at ")[2].partition(" s: ")[0])
+
+    published_s = stopped_at_s("--topic", "/image")
+    assert published_s == pytest.approx(round(published_s, 1))
+    assert stopped_at_s("--for", "0.05") == pytest.approx(published_s + 0.05)
+    assert stopped_at_s() <= published_s + 0.1
+    assert stopped_at_s("--topic", "/small", "--for", "0.01") <= published_s + 0.11
+    manycore("resume")
+    manycore("stop")
+    assert run.wait() == 0
