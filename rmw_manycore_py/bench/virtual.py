@@ -1,0 +1,119 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Runs of a mapfile in virtual time, and whether they are the same."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from rmw_manycore_program import own_program
+from rmw_manycore_py.bench.load import busy
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.trace.events import Kind, Trace, endpoint_id
+from rmw_manycore_py.trace.files import load
+
+CONDITIONS = ("alone", "beside busy loops", "on one CPU")
+_LOOPS = 3
+_LOGGED = {Kind.WRITE: "publishes", Kind.RELEASE: "takes"}
+
+
+@dataclass(frozen=True)
+class VirtualRun:
+    """A run in virtual time.
+
+    :ivar log: what nodes printed, and their messages with the virtual time of each.
+    :ivar wall_s: from the start of the command to its end.
+    """
+
+    condition: str
+    log: tuple[str, ...]
+    wall_s: float
+
+    @property
+    def digest(self) -> str:
+        """Hash of the log."""
+        return hashlib.sha256("\n".join(self.log).encode()).hexdigest()
+
+
+def runs_of(
+    mapfile: Path, options: Sequence[str], count: int, duration_s: float, timeout_s: float
+) -> Iterator[VirtualRun]:
+    """Yield runs under each condition in turn.
+
+    :param options: of `manycore run`: how long callbacks take.
+    :param timeout_s: wall time of a run.
+    :raises ManycoreError: if a run fails, or does not end.
+    """
+    for number in range(count):
+        condition = CONDITIONS[number % len(CONDITIONS)]
+        with TemporaryDirectory() as directory, _under(condition, timeout_s):
+            trace = Path(directory) / "trace.csv"
+            words = ("run", str(mapfile), "--virtual", *options, "--json")
+            length = ("--duration", f"{duration_s:g}", "--trace", str(trace))
+            begin_s = time.monotonic()
+            output = _output_of(own_program("rmw_manycore_py.cli", *words, *length), timeout_s)
+            wall_s = time.monotonic() - begin_s
+            log = (*_printed(output), *_messages(load(trace)))
+            yield VirtualRun(condition, log, wall_s)
+
+
+@contextmanager
+def _under(condition: str, timeout_s: float) -> Iterator[None]:
+    cpus = sorted(os.sched_getaffinity(0))
+    with ExitStack() as stack:
+        if condition == "beside busy loops":
+            stack.enter_context(busy(_LOOPS, cpus, timeout_s))
+        elif condition == "on one CPU":
+            stack.callback(os.sched_setaffinity, 0, cpus)
+            os.sched_setaffinity(0, cpus[:1])
+        yield
+
+
+def _output_of(command: Sequence[str], timeout_s: float) -> str:
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    try:
+        output, _ = process.communicate(timeout=timeout_s)
+    except subprocess.TimeoutExpired as error:
+        process.send_signal(signal.SIGINT)
+        output, _ = process.communicate()
+        notices = [one["text"] for one in _events(output) if one["event"] == "notice"]
+        why = f": {notices[-1]}" if notices else ""
+        raise ManycoreError(f"the run did not end within {timeout_s:g} s{why}") from error
+    if process.returncode:
+        raise ManycoreError(f"the run failed with exit status {process.returncode}")
+    return output
+
+
+def _events(output: str) -> Iterator[dict[str, str]]:
+    return map(json.loads, output.splitlines())
+
+
+def _printed(output: str) -> list[str]:
+    """Return the lines of each node; those of several nodes mix by chance."""
+    lines: dict[str, list[str]] = {}
+    for event in _events(output):
+        if event["event"] == "output":
+            lines.setdefault(event["node"], []).append(event["line"])
+    return [f"{node} prints {line}" for node in sorted(lines) for line in lines[node]]
+
+
+def _messages(trace: Trace) -> list[str]:
+    found = []
+    for process, thread in trace.threads():
+        if process.is_receive_thread:
+            continue
+        for time_ns, number, _, slot, incarnation, kind in thread.events.tolist():
+            if kind in _LOGGED:
+                endpoint = endpoint_id(slot, incarnation)
+                node, topic = trace.node_of(endpoint), trace.topic_of(endpoint)
+                found.append(f"{time_ns} {node} {_LOGGED[kind]} {topic} {number}")
+    return sorted(found)
