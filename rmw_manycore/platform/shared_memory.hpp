@@ -55,7 +55,7 @@ public:
 
   /// Makes the kernel take the file's further pages from this NUMA node while it has free memory,
   /// whichever process needs them. False where the system refuses, as containers may; the pages are
-  /// then from the node of the CPU that needs them.
+  /// then from the node of the CPU that needs them. None is preferred if it is negative.
   bool prefer_numa_node(int node) const noexcept;
 
   /// Room of the file system that holds the file.

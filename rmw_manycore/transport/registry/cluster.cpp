@@ -73,9 +73,7 @@ void Cluster::create(
   const PlatformPaths & paths, uint32_t id, const Profile & profile, uint64_t platform_nonce) {
   const uint64_t smem_bytes = profile.smem_bytes;
   const SharedMemory memory = SharedMemory::create(paths.cluster(id), smem_bytes);
-  if (const int node = profile.numa_node[id - 1]; node >= 0) {
-    memory.prefer_numa_node(node);  // refused: slower, and `manycore doctor` reports it
-  }
+  memory.prefer_numa_node(profile.numa_node[id - 1]);  // refused: slower, `doctor` reports it
   const uint32_t granule = granule_size(smem_bytes);
   const uint64_t granules = smem_bytes / granule;
   memory.reserve(0, granule_map_offset + map_bytes(granules));

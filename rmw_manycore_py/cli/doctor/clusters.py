@@ -65,7 +65,7 @@ def check_cpuset(own: Path, mount: Path) -> Finding:
         allow = "`systemctl edit user@.service` with Delegate=cpuset under [Service] allows it"
         return Finding(subject, Verdict.OK, "not delegated to this session", f"{adds}; {allow}")
     if not os.access(group / "cgroup.subtree_control", os.W_OK):
-        allow = "`systemd-run --user --scope -p Delegate=cpuset manycore run ...`, or root, may"
+        allow = "`systemd-run --user --scope -p Delegate=cpuset` before a command, or root, may"
         return Finding(subject, Verdict.OK, "present, not writable", f"{adds}; {allow}")
     allow = "write `root` or `isolated` to cpuset.cpus.partition of a group with those CPUs"
     return Finding(subject, Verdict.OK, "delegated to this session", f"{adds}: {allow}")
