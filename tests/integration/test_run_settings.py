@@ -103,7 +103,7 @@ def test_an_entry_point_is_shown_by_package_and_executable(
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text("nodes:\n  eye: {cluster: 1, package: my_robot, executable: detector}\n")
     run = start(manycore_command("run", mapfile), PYTHONPATH=str(tmp_path))
-    wait_until(lambda: platform in manycore.platforms(), "it runs")
+    run.wait_for("eye started")
     wait_until(
         lambda: "my_robot detector" in {p.program for p in manycore.status(platform).processes},
         "the node runs",
