@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Pending requests, and the response that is sent if no reply arrives."""
+"""Pending requests of a service."""
 
 from __future__ import annotations
 
@@ -8,29 +8,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
-
-from rmw_manycore_bridge.outside import types
-
-# Fields in which ROS responses describe an error.
-_REASON_FIELDS = ("message", "status_message", "reason", "error_string", "error_message")
-_REJECTED = 1  # action_msgs/srv/CancelGoal: ERROR_REJECTED
-
-
-def empty_answer(service_type: str, reason: str) -> bytes:
-    """Return a default response (all zero and false), with the reason in a suitable field if any.
-
-    ROS 2 has no error replies; this response keeps a caller from waiting forever.
-    """
-    from rclpy.serialization import serialize_message  # not loaded before it is needed
-
-    response_type = types.load(service_type).Response
-    response = response_type()
-    for name, kind in response_type.get_fields_and_field_types().items():
-        if name in _REASON_FIELDS and kind == "string":
-            setattr(response, name, reason)
-    if hasattr(response, "return_code") and hasattr(response, "goals_canceling"):
-        response.return_code = _REJECTED
-    return bytes(serialize_message(response))
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from rmw_manycore_bridge.empty_answer import empty_answer
 from rmw_manycore_bridge.outside import types
 from rmw_manycore_bridge.outside.loop import Mover
-from rmw_manycore_bridge.pending import Asked, Pending, empty_answer
+from rmw_manycore_bridge.pending import Asked, Pending
 from rmw_manycore_bridge.policies import replaced, service_qos
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_py.native import _transport

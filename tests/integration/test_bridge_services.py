@@ -5,24 +5,21 @@ from __future__ import annotations
 
 import re
 import signal
-import threading
-import time
 from typing import Any
 
 import pytest
 
 from rmw_manycore_py.routes.route import action_routes, parameter_routes
-from support import IS_MANYCORE, TIMEOUT_S, wait_until
+from support import IS_MANYCORE, TIMEOUT_S
 from support.nodes.bridging import Bridge
 from support.nodes.ros import announce, peer_node, spin_until, type_of
+from support.nodes.serving import FIBONACCI, SET_BOOL, call, count, send_goal, serve
 
 pytestmark = [
     pytest.mark.integration,
     pytest.mark.skipif(not IS_MANYCORE, reason="the bridge is part of rmw_manycore"),
 ]
 
-SET_BOOL = "std_srvs/srv/SetBool"
-FIBONACCI = "test_msgs/action/Fibonacci"
 MANY = 1000  # requests: many more than the bridge takes before it looks at the graph
 
 
@@ -36,40 +33,6 @@ def sides(bridge: Bridge, direction: str) -> tuple[Any, Any]:
     if direction == "inward":
         return bridge.inside, bridge.outside
     return bridge.outside, bridge.inside
-
-
-def serve(answers: bool) -> None:
-    """Serve SetBool; unless `answers`, block in the first request."""
-    with peer_node("server") as node:
-
-        def answer(request: Any, response: Any) -> Any:
-            announce("asked")
-            if not answers:
-                threading.Event().wait()
-            response.success, response.message = request.data, "served"
-            return response
-
-        node.create_service(type_of(SET_BOOL), "/lamp", answer)
-        # Fast DDS drops a response if it does not discover the client within 100 ms; not spun, the
-        # node answers no request before.
-        wait_until(lambda: node.count_clients("/lamp"), "the bridge's client is discovered")
-        announce("serving")
-        spin_until(node, lambda: False, 1e6)
-
-
-def call(times: int) -> None:
-    """Call SetBool, one call after the other."""
-    with peer_node("caller") as node:
-        kind = type_of(SET_BOOL)
-        client = node.create_client(kind, "/lamp")
-        assert client.wait_for_service(TIMEOUT_S)
-        for number in range(times):
-            future = client.call_async(kind.Request(data=number % 2 == 0))
-            announce("called")
-            spin_until(node, future.done)
-            announce(f"answer {future.result().success} {future.result().message}")
-        spin_until(node, lambda: not client.service_is_ready())
-        announce("no service")
 
 
 def test_a_service_is_called(bridge, direction) -> None:
@@ -222,51 +185,6 @@ def test_parameters_from_outside(bridge) -> None:
     watcher.wait_for("^there$")
     tuned.stop()
     watcher.wait_for("^gone$")
-
-
-def count() -> None:
-    """Serve Fibonacci with endless feedback; succeed on request."""
-    from rclpy.action import ActionServer
-
-    told: list[int] = []
-    signal.signal(signal.SIGUSR1, lambda number, _: told.append(number))
-    kind = type_of(FIBONACCI)
-    with peer_node("counter") as node:
-
-        def execute(goal: Any) -> Any:
-            announce("executing")
-            while not told:
-                goal.publish_feedback(kind.Feedback(sequence=[0, 1]))
-                time.sleep(0.02)  # like an action that takes long
-            goal.succeed()
-            return kind.Result(sequence=[0, 1, 1])
-
-        ActionServer(node, kind, "count", execute)
-        for service in ("send_goal", "get_result"):  # as in `serve`
-            name = f"/count/_action/{service}"
-            wait_until(lambda name=name: node.count_clients(name), f"a client of {name}")
-        announce("serving")
-        spin_until(node, lambda: False, 1e6)
-
-
-def send_goal() -> None:
-    """Send a goal, and print its feedback and result."""
-    from rclpy.action import ActionClient
-
-    kind = type_of(FIBONACCI)
-    with peer_node("sender") as node:
-        client = ActionClient(node, kind, "count")
-        spin_until(node, client.server_is_ready)
-        sent = client.send_goal_async(
-            kind.Goal(order=3),
-            lambda message: announce(f"feedback {list(message.feedback.sequence)}"),
-        )
-        spin_until(node, sent.done)
-        announce(f"accepted {sent.result().accepted}")
-        result = sent.result().get_result_async()
-        announce("asked for the result")
-        spin_until(node, result.done)
-        announce(f"status {result.result().status} {list(result.result().result.sequence)}")
 
 
 def test_an_action(bridge, direction) -> None:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Classes and type hashes of installed types, including parts of actions."""
+"""Classes, descriptions and hashes of installed types, including parts of actions."""
 
 from __future__ import annotations
 
@@ -37,12 +37,25 @@ def load(name: str) -> Any:
 
 def hash_of(name: str) -> str:
     """Return the type hash (REP 2016); empty if the installed package has none."""
+    hashes = {entry["type_name"]: entry["hash_string"] for entry in _described(name, "type_hashes")}
+    return str(hashes.get(name, ""))
+
+
+def fields_of(name: str) -> dict[str, list[dict[str, Any]]]:
+    """Return the fields of all types that a type refers to, by type; empty if it has none.
+
+    A field is an entry of type_description_interfaces/msg/Field.
+    """
+    found = _described(name, "type_description_msg") or {"referenced_type_descriptions": []}
+    return {entry["type_name"]: entry["fields"] for entry in found["referenced_type_descriptions"]}
+
+
+def _described(name: str, key: str) -> Any:
+    """Return a part of the description that is installed with a type; empty without one."""
     package, kind, type_name = name.split("/")
     whole = type_name.rpartition("_")[0] if kind == "action" else type_name
     share = package_share(package)
     description = share / kind / f"{whole}.json" if share else None
     if description is None or not description.is_file():
-        return ""
-    data = json.loads(description.read_text())
-    hashes = {entry["type_name"]: entry["hash_string"] for entry in data["type_hashes"]}
-    return str(hashes.get(name, ""))
+        return {}
+    return json.loads(description.read_text())[key]

@@ -16,13 +16,13 @@ import time
 from typing import Any
 
 from support.nodes.ros import announce, type_of
+from support.nodes.serving import SET_BOOL
 
 DEFINITIONS = {
     "std_msgs/msg/String": "string data",
     "std_msgs/msg/Int64": "int64 data",
-    "std_srvs/srv/SetBool": ("bool data", "bool success\nstring message"),
+    SET_BOOL: ("bool data", "bool success\nstring message"),
 }
-SET_BOOL = "std_srvs/srv/SetBool"
 BEST_EFFORT = "2"
 
 
