@@ -94,13 +94,16 @@ def shown(output: str) -> Shown:
 def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the directory of C++ programs that are linked like the libraries of the wheels."""
     directory = tmp_path_factory.mktemp("programs")
-    headers = [f"-I{path}" for path in (PREFIX / "include").iterdir()]
     for name, libraries in LIBRARIES.items():
-        source = TESTS / "programs" / f"{name}.cpp"
-        links = [f"-L{PREFIX}/lib", *libraries, *LINK_OPTIONS]
-        command = ["c++", "-std=c++17", *headers, source, "-o", directory / name, *links]
-        subprocess.run(command, check=True)
+        compile_program(name, directory / name, *libraries)
     return directory
+
+
+def compile_program(name: str, output: Path, *libraries: str) -> None:
+    headers = [f"-I{path}" for path in (PREFIX / "include").iterdir()]
+    source = TESTS / "programs" / f"{name}.cpp"
+    links = [f"-L{PREFIX}/lib", *libraries, *LINK_OPTIONS]
+    subprocess.run(["c++", "-std=c++17", *headers, source, "-o", output, *links], check=True)
 
 
 @pytest.fixture(params=LIBRARIES)
@@ -174,6 +177,14 @@ def test_a_program_in_cpp_is_restarted_as_it_was_started(shell, programs) -> Non
 def test_what_a_shell_exports_is_for_children_of_python_too(exported, program) -> None:
     assert show(program, exported).is_manycore
     assert show(python(PARENTS["subprocess"], *program), exported).is_manycore
+
+
+def test_a_program_in_cpp_needs_no_python_for_the_messages_of_rcl(exported, tmp_path) -> None:
+    program = tmp_path / "program"
+    compile_program("rcl_node", program, *LIBRARIES["rcl_node"], "-DONLY_FOR_MANYCORE")
+    assert show([str(program)], exported).is_manycore
+    done = run([str(program)], {**exported, "RMW_IMPLEMENTATION": OTHER})
+    assert "undefined symbol: PyExc_RuntimeError" in done.stderr
 
 
 @pytest.mark.parametrize("value", [OTHER, ""])

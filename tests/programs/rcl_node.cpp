@@ -12,11 +12,13 @@
 #include "rmw/rmw.h"
 
 // Referenced by the Python message libraries, to which librcl.so of the wheels is linked; never
-// used.
+// used. The stand-ins of rmw_manycore define them, nothing does so beside Fast DDS.
+#ifndef ONLY_FOR_MANYCORE
 extern "C" {
 void * PyExc_RuntimeError = nullptr;
 void * _Py_TrueStruct = nullptr;
 }
+#endif
 
 namespace {
 
