@@ -5,7 +5,8 @@ In the ROS 2 wheels librcl.so is linked to librmw_fastrtps_cpp.so by name. The d
 its search path once, at program start, so the process has to be started with our stand-ins first in
 LD_LIBRARY_PATH. `rmw_manycore.pth` calls `select()` in every Python process with
 RMW_IMPLEMENTATION=rmw_manycore or with the stand-ins; launchers call `substituted_environment()`
-instead and save the re-execution. See docs/design/substitution.md.
+instead and save the re-execution. A sourced ROS 2 installation loads the middleware by name, and
+only has to find it. See docs/design/substitution.md.
 
 Imports only what Python has already imported: this runs before everything else.
 """
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 IMPLEMENTATION = "rmw_manycore"
 LIBRARY_PATH = "LD_LIBRARY_PATH"
+AMENT_PREFIX_PATH = "AMENT_PREFIX_PATH"
+OWN_LIBRARY = "lib/librmw_manycore.so"
 STAND_INS = "/lib/rmw_manycore/standin"
 REPLACED_LIBRARY = "librmw_fastrtps_cpp.so"
 # Disables the wheels' own start-up hook, which re-executes without keeping the search order.
@@ -57,16 +60,18 @@ def select() -> None:
 
 
 def _substitute(replaced: bool, is_child: bool) -> None:
-    stand_ins = stand_in_directory(sys.prefix)
-    if library_path(os.environ)[:1] == [stand_ins] and not is_child:
+    extends = extends_ros(os.environ, sys.prefix)
+    needed = f"{sys.prefix}/lib" if extends else stand_in_directory(sys.prefix)
+    path = library_path(os.environ)
+    if needed in (path if extends else path[:1]) and not is_child:
         if replaced:
             os.environ[REPLACED] = PARENT
-    elif not (needs_stand_ins(sys.prefix) and _is_python_program()):
+    elif not ((extends or needs_stand_ins(sys.prefix)) and _is_python_program()):
         return
     elif replaced:
         sys.stderr.write(
             f"rmw_manycore: {LIBRARY_PATH} was lost when {sys.executable} restarted itself, so "
-            f"rmw_manycore cannot be used; start it with {LIBRARY_PATH}={stand_ins}\n"
+            f"rmw_manycore cannot be used; start it with {LIBRARY_PATH}={needed}\n"
         )
     else:
         environment = substituted_environment(os.environ, sys.prefix)
@@ -98,10 +103,9 @@ def raise_on_interrupt() -> None:
 
 
 def substituted_environment(environment: Mapping[str, str], prefix: str) -> dict[str, str]:
-    """Return `environment` for programs of the Python `prefix` to load rmw_manycore.
-
-    Unchanged in a ROS 2 installation that selects the middleware itself.
-    """
+    """Return `environment` for programs of the Python `prefix` to load rmw_manycore."""
+    if extends_ros(environment, prefix):
+        return _with_own_prefix(environment, prefix)
     return _with_libraries(environment, prefix, stand_in_directory(prefix))
 
 
@@ -111,6 +115,21 @@ def plain_environment(environment: Mapping[str, str], prefix: str) -> dict[str, 
     `environment` may contain the stand-ins, or belong to another prefix.
     """
     return _with_libraries(environment, prefix)
+
+
+def extends_ros(environment: Mapping[str, str], prefix: str) -> bool:
+    """Return whether `prefix` adds rmw_manycore, without the ROS 2 wheels, to a sourced ROS 2."""
+    is_sourced = bool(environment.get(AMENT_PREFIX_PATH)) and not needs_stand_ins(prefix)
+    return is_sourced and os.path.exists(f"{prefix}/{OWN_LIBRARY}")
+
+
+def _with_own_prefix(environment: Mapping[str, str], prefix: str) -> dict[str, str]:
+    """Return `environment` with `prefix` last: messages of both are those of the sourced ROS 2."""
+    result = {name: value for name, value in environment.items() if name != REPLACED}
+    for name, own in ((LIBRARY_PATH, f"{prefix}/lib"), (AMENT_PREFIX_PATH, prefix)):
+        others = [path for path in environment.get(name, "").split(os.pathsep) if path]
+        result[name] = os.pathsep.join(others if own in others else [*others, own])
+    return result
 
 
 def _with_libraries(

@@ -7,12 +7,12 @@ import shlex
 
 import click
 
-from rmw_manycore_hook import LIBRARY_PATH, WHEELS_BOOTSTRAPPED
+from rmw_manycore_hook import AMENT_PREFIX_PATH, LIBRARY_PATH, WHEELS_BOOTSTRAPPED
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.launch.processes.environment import program_environment
 
-VARIABLES = ("RMW_IMPLEMENTATION", LIBRARY_PATH, WHEELS_BOOTSTRAPPED)
+VARIABLES = ("RMW_IMPLEMENTATION", LIBRARY_PATH, WHEELS_BOOTSTRAPPED, AMENT_PREFIX_PATH)
 
 
 @click.command("env", epilog=examples('eval "$(manycore env)"', "python talker.py"))
@@ -20,8 +20,8 @@ VARIABLES = ("RMW_IMPLEMENTATION", LIBRARY_PATH, WHEELS_BOOTSTRAPPED)
 def command(as_json: bool) -> None:
     """Print the environment for ROS 2 programs.
 
-    It makes the programs of a shell use rmw_manycore. Python programs only need
-    RMW_IMPLEMENTATION; the other variables are for other languages.
+    It makes the programs of a shell use rmw_manycore. Programs of this Python only need
+    RMW_IMPLEMENTATION; the other variables are for other languages, and for ROS 2 from apt.
     """
     wanted = program_environment({})
     names = [name for name in VARIABLES if name in wanted]

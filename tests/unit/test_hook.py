@@ -138,6 +138,30 @@ def test_the_environment_of_an_ordinary_ros_is_not_changed(tmp_path: Path) -> No
     assert hook.substituted_environment({"A": "b"}, str(tmp_path)) == {"A": "b"}
 
 
+@pytest.fixture
+def beside_ros(tmp_path: Path) -> Prefix:
+    """A prefix with rmw_manycore but no ROS 2, which is installed elsewhere."""
+    prefix = Prefix(tmp_path)
+    (tmp_path / "lib/librmw_fastrtps_cpp.so").unlink()
+    (tmp_path / hook.OWN_LIBRARY).touch()
+    return prefix
+
+
+def test_a_sourced_ros_finds_the_middleware_after_its_own_libraries(beside_ros: Prefix) -> None:
+    sourced = {"AMENT_PREFIX_PATH": "/opt/ros", "LD_LIBRARY_PATH": "/opt/ros/lib"}
+    path = ["/opt/ros/lib", f"{beside_ros.path}/lib"]
+    shown = beside_ros.show(**sourced)
+    assert loader_path(shown) == path
+    assert shown["environ"]["AMENT_PREFIX_PATH"] == f"/opt/ros:{beside_ros.path}"
+    assert hook.WHEELS_BOOTSTRAPPED not in shown["environ"]
+    again = beside_ros.show(**sourced | {"LD_LIBRARY_PATH": ":".join(path)})
+    assert hook.REPLACED not in again["environ"]  # not started twice
+
+
+def test_without_a_sourced_ros_there_is_nothing_to_find(beside_ros: Prefix) -> None:
+    assert "LD_LIBRARY_PATH" not in beside_ros.show()["environ"]
+
+
 def test_memory_of_large_messages_is_kept_by_this_process_only(prefix: Prefix) -> None:
     shown = prefix.show()
     loader = dict(entry.split("=", 1) for entry in shown["loader"] if "=" in entry)

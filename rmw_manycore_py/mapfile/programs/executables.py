@@ -8,6 +8,7 @@ import os
 import re
 import shlex
 import shutil
+import site
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -174,11 +175,25 @@ def _of_file(path: Path) -> Program:
         first_line = file.readline(200)
     if not re.match(rb"#!.*\bpython", first_line):
         return Program((str(path),))
-    # `env python3` finds this environment's interpreter only if the environment is activated.
-    by_name = b"/env " in first_line
     module = module_of_script(path)
     source = _python_source(_module_spec(module, path.parent)) if module else None
-    return Program((sys.executable, str(path)) if by_name else (str(path),), source or path)
+    argv = (sys.executable, str(path)) if _runs_in_this_python(first_line) else (str(path),)
+    return Program(argv, source or path)
+
+
+def _runs_in_this_python(first_line: bytes) -> bool:
+    """Return whether a script is for `env python3`, or for the Python that this one extends.
+
+    The first finds this environment's only if it is activated; in the second, which is that of an
+    installed ROS 2, the start-up hooks of this environment would be missing.
+    """
+    if b"/env " in first_line:
+        return True
+    interpreter = Path(os.fsdecode(first_line[2:].split()[0]))
+    is_extended = sys.prefix != sys.base_prefix and sys.base_prefix in site.PREFIXES
+    is_of_venv = (interpreter.parent.parent / "pyvenv.cfg").exists()
+    ours = os.path.realpath(sys.executable)
+    return is_extended and not is_of_venv and os.path.realpath(interpreter) == ours
 
 
 def _entry_point(package: str, executable: str) -> Program | None:

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import site
 import sys
+import venv
 from pathlib import Path
 
 import pytest
@@ -87,6 +89,28 @@ def test_scripts_with_code_of_their_own_are_their_own_source(installed: Path) ->
     script = installed / "talker"
     assert source_of(script, BY_HAND) == script
     assert source_of(script, "#!/usr/bin/python3\nprint('unclear (\n") == script
+
+
+def test_scripts_of_an_installed_ros_run_in_the_environment_that_extends_its_python(
+    installed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    python = Path(sys.executable).resolve()
+    venv.create(tmp_path / "other", symlinks=True)
+    for name, interpreter in {"system": python, "other": tmp_path / "other/bin/python"}.items():
+        script = installed / name
+        script.write_text(f"#!{interpreter}\n")
+        script.chmod(0o755)
+
+    def argv(name: str) -> tuple[str, ...]:
+        program = find_executable("demo", name)
+        assert program is not None
+        return program.argv
+
+    assert argv("system") == (str(installed / "system"),)
+    # As in an environment that sees the packages of its base.
+    monkeypatch.setattr(site, "PREFIXES", [sys.prefix, sys.base_prefix])
+    assert argv("system") == (sys.executable, str(installed / "system"))
+    assert argv("other") == (str(installed / "other"),)
 
 
 def test_topics_of_a_package_executable_are_known(tmp_path: Path) -> None:
