@@ -6,6 +6,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import re
+import shlex
 import subprocess
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
@@ -145,6 +146,17 @@ def script(name: str) -> Any:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+def test_the_page_on_apt_installs_what_apt_lacks() -> None:
+    """Everything but the ROS 2 wheels, and what `apt install ros-jazzy-desktop` brings."""
+    text = (ROOT / "pyproject.toml").read_text()
+    listed = text.partition("\ndependencies = [")[2].partition("\n]")[0]
+    by_apt = {"numpy", "pyyaml>=6", "empy==3.3.4"}
+    needed = {name for name in re.findall(r'"([^"]+)"', listed) if not name.startswith("ros-")}
+    page = (ROOT / "docs/how-to/ros2_apt.md").read_text()
+    (line,) = re.findall(r"^\$ pip install ((?!--).*)$", page, re.MULTILINE)
+    assert set(shlex.split(line)) == needed - by_apt
 
 
 def test_what_the_table_of_features_calls_tested_exists() -> None:
