@@ -39,7 +39,7 @@ FILES = {
 def check_install() -> Iterator[Finding]:
     """Yield findings about the installation; the last check starts rclpy."""
     yield _python()
-    yield _ros()
+    yield check_ros()
     yield from _files()
     yield _hook()
     yield _substitution()
@@ -54,7 +54,8 @@ def _python() -> Finding:
     return judged("python", sys.version_info >= MIN_PYTHON, f"{version}, {sys.prefix}", advice)
 
 
-def _ros() -> Finding:
+def check_ros() -> Finding:
+    """Return whether ROS 2 is Jazzy, and one alone."""
     try:
         version = importlib.metadata.version(ROS_PACKAGE)
     except importlib.metadata.PackageNotFoundError:
@@ -62,9 +63,13 @@ def _ros() -> Finding:
         found = f"no wheels; sourced installation: {distribution}"
         advice = 'pip install "ros-rclpy[fastrtps]==7.1.6" ros-jazzy-common-interfaces'
         return judged("ROS 2", distribution == "jazzy", found, advice)
+    found = f"wheels, {ROS_PACKAGE} {version}"
+    if sourced := os.environ.get("ROS_DISTRO"):
+        found += f", and a sourced {sourced}: programs load libraries of both"
+        advice = "put rmw_manycore beside it without the wheels: docs/how-to/ros2_apt.md"
+        return Finding("ROS 2", Verdict.WARNING, found, advice)
     advice = 'pip install "ros-rclpy[fastrtps]==7.1.6"'
-    is_jazzy = version.startswith(ROS_VERSION)
-    return judged("ROS 2", is_jazzy, f"wheels, {ROS_PACKAGE} {version}", advice)
+    return judged("ROS 2", version.startswith(ROS_VERSION), found, advice)
 
 
 def _files() -> Iterator[Finding]:

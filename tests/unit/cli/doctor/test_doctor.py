@@ -4,7 +4,7 @@
 import pytest
 
 from rmw_manycore_py.cli.doctor.finding import Verdict, advised, judged
-from rmw_manycore_py.cli.doctor.install import judge_probe
+from rmw_manycore_py.cli.doctor.install import check_ros, judge_probe
 
 pytestmark = pytest.mark.unit
 
@@ -32,3 +32,11 @@ def test_the_probe(
     finding = judge_probe(status, words, errors)
     assert finding.verdict is verdict
     assert found in finding.found
+
+
+def test_two_installations_of_ros_are_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    assert check_ros().verdict is Verdict.OK
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+    finding = check_ros()
+    assert (finding.verdict, "sourced jazzy" in finding.found) == (Verdict.WARNING, True)
