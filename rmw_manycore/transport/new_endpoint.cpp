@@ -48,8 +48,8 @@ uint32_t new_endpoint(
   std::copy(spec.type_hash.value.begin(), spec.type_hash.value.end(), entry.type_hash);
   for (std::atomic<uint64_t> * count :
        {&entry.counters.messages, &entry.counters.bytes, &entry.counters.lost,
-        &entry.counters.expired, &entry.counters.refused, &entry.counters.overwritten,
-        &entry.counters.dropped, &entry.counters.in_place}) {
+        &entry.counters.superseded, &entry.counters.expired, &entry.counters.refused,
+        &entry.counters.overwritten, &entry.counters.dropped, &entry.counters.in_place}) {
     count->store(0);
   }
   entry.asserted_ns.store(ManualLiveliness::never);

@@ -34,6 +34,7 @@ class PlatformState:
     processes: list[_transport.ProcessInfo]
     nodes: defaultdict[int, list[str]]  # full names by process slot
     losses: list[Row]
+    superseded: list[Row]
     copies: list[Row]
     transfers: list[_transport.TopicConfiguration]
 
@@ -48,6 +49,7 @@ class PlatformState:
                 opened.processes(),
                 node_names_by_process(opened.nodes()),
                 view.losses(endpoints),
+                view.superseded(endpoints),
                 view.copies(endpoints),
                 [topic for topic in opened.topic_table() if topic.transfer != "dsm"],
             )
@@ -59,6 +61,7 @@ class PlatformState:
             "clusters": [cluster_row(cluster) for cluster in self.clusters],
             "processes": [{**process_row(p), "nodes": self.nodes[p.slot]} for p in self.processes],
             "losses": self.losses,
+            "superseded": self.superseded,
             "copies": self.copies,
             "transfers": [
                 {
@@ -133,7 +136,7 @@ def _show(state: PlatformState | Unreadable) -> None:
         echo(f"{names}: {', '.join(words)}")
     for loss in state.losses:
         names = escaped(f"{loss['node']} {loss['topic']}")
-        echo(f"{names}: {loss['counter']} {loss['count']}")
+        click.secho(f"{names}: {loss['counter']} {loss['count']}", fg="red")
 
 
 def _show_clusters(clusters: list[_transport.ClusterInfo]) -> None:
@@ -148,7 +151,7 @@ def _show_clusters(clusters: list[_transport.ClusterInfo]) -> None:
 
 def _show_processes(state: PlatformState) -> None:
     columns = ("#pid", "#cluster", "#core", "#host CPU", "program", "nodes", "state")
-    table = new_table(*columns)
+    table = new_table(*columns, expendable=("program", "host CPU", "state", "pid"))
     for process in state.processes:
         numbers = (process.pid, process.cluster, process.core, process.host_cpu)
         texts = ("-" if number is None else str(number) for number in numbers)

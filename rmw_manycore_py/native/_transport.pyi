@@ -181,6 +181,10 @@ class CounterValues:
         """Subscription: gone before they were taken."""
 
     @property
+    def superseded(self) -> int:
+        """Subscription with KEEP_LAST 1: a newer one was found in their place."""
+
+    @property
     def expired(self) -> int:
         """Subscription: older than their lifespan when their turn came."""
 
@@ -498,6 +502,9 @@ class Subscription:
 
     def lost(self) -> int:
         """Return the number of messages that were gone before they were taken."""
+
+    def superseded(self) -> int:
+        """Return the number of messages in whose place a newer one was found."""
 
     def close(self) -> None:
         """Close the subscription; later calls raise ValueError. A claim stays valid."""

@@ -70,6 +70,8 @@ class EndpointStatus:
     :param messages: messages published or taken so far.
     :param bytes: their serialized size.
     :param lost: of a subscription: messages overwritten before they were taken.
+    :param superseded: of a subscription with KEEP_LAST 1: messages not taken, of whose publisher it
+        found a newer one instead.
     :param expired: of a subscription: messages dropped because their lifespan was over.
     :param refused: of a publisher: messages that did not fit into its memory.
     :param dropped: of a publisher: messages that were not transferred to a cluster for want of
@@ -87,6 +89,7 @@ class EndpointStatus:
     messages: int
     bytes: int
     lost: int
+    superseded: int
     expired: int
     refused: int
     dropped: int
@@ -200,6 +203,7 @@ def _endpoint(row: _transport.EndpointInfo, pid: int | None) -> EndpointStatus:
         messages=counters.messages,
         bytes=counters.bytes,
         lost=counters.lost,
+        superseded=counters.superseded,
         expired=counters.expired,
         refused=counters.refused,
         dropped=counters.dropped,

@@ -14,6 +14,9 @@ from rmw_manycore_py.trace.flows import merged
 from rmw_manycore_py.trace.names import place_name
 from rmw_manycore_py.trace.pairs import groups_of, split_by
 
+# Kinds of events whose value is a number of messages that were not taken.
+_MISSED = {Kind.LOST: "lost", Kind.SUPERSEDED: "superseded"}
+
 
 @dataclass(frozen=True)
 class Counter:
@@ -30,7 +33,8 @@ def counters_of(trace: Trace) -> list[Counter]:
 
 
 def _queues(trace: Trace) -> Iterator[Counter]:
-    events = merged(list(trace.threads()), (Kind.HINT, Kind.CLAIM, Kind.EXPIRED, Kind.LOST))
+    kinds = (Kind.HINT, Kind.CLAIM, Kind.EXPIRED, *_MISSED)
+    events = merged(list(trace.threads()), kinds)
     changes = _queue_changes(events)
     for name, own in _by_endpoint(trace, events):
         lengths = np.cumsum(changes[own])
@@ -53,16 +57,17 @@ def _queue_changes(events: Events) -> NDArray[np.int64]:
     was_there[np.append(True, np.diff(entries[order]) != 0)[: len(order)]] = False
     changes = np.empty(len(events), np.int64)
     changes[order] = is_there.astype(np.int64) - was_there
-    is_lost = events["kind"] == Kind.LOST
-    changes[is_lost] = -events["value"][is_lost].astype(np.int64)
+    is_missed = np.isin(events["kind"], list(_MISSED))
+    changes[is_missed] = -events["value"][is_missed].astype(np.int64)
     return changes
 
 
 def _losses(trace: Trace) -> Iterator[Counter]:
-    events = merged(list(trace.threads()), (Kind.LOST,))
-    for name, own in _by_endpoint(trace, events):
-        lost = np.cumsum(events["value"][own]).astype(np.float64)
-        yield Counter(f"lost {name}", events["time_ns"][own], lost)
+    for kind, word in _MISSED.items():
+        events = merged(list(trace.threads()), (kind,))
+        for name, own in _by_endpoint(trace, events):
+            count = np.cumsum(events["value"][own]).astype(np.float64)
+            yield Counter(f"{word} {name}", events["time_ns"][own], count)
 
 
 def _cpu_shares(trace: Trace) -> Iterator[Counter]:

@@ -65,6 +65,7 @@ class Kind(IntEnum):
     ARRIVE = 30
     DROP = 31
     IN_PLACE = 32
+    SUPERSEDED = 33
 
 
 EndpointId = int

@@ -49,6 +49,7 @@ class What(IntEnum):
     ARRIVE = 18
     DROP = 19
     IN_PLACE = 20
+    SUPERSEDED = 21
 
 
 # Category shown by viewers, and prefix of the name; the topic follows.
@@ -61,6 +62,7 @@ _WORDS = {
     What.CALLBACK: ("callback", "callback"),
     What.RECEIVE: ("receive", "receive"),
     What.LOST: ("event", "lost"),
+    What.SUPERSEDED: ("event", "superseded"),
     What.EXPIRED: ("event", "expired"),
     What.BLOCKED: ("event", "blocked"),
     What.MATCH: ("event", "match"),
@@ -82,6 +84,7 @@ ARGUMENTS = {
     What.TAKE: (("number", "number"),),
     What.RECEIVE: (("number", "number"),),
     What.LOST: (("count", "value"),),
+    What.SUPERSEDED: (("count", "value"),),
     What.BRIDGE_OUT: (("number", "number"),),
     What.BRIDGE_IN: (("age_ns", "value"), ("number", "number")),
     What.PASS: (("pass", "number"),),
@@ -92,6 +95,7 @@ ARGUMENTS = {
 }
 _INSTANTS = {
     Kind.LOST: What.LOST,
+    Kind.SUPERSEDED: What.SUPERSEDED,
     Kind.EXPIRED: What.EXPIRED,
     Kind.BLOCKED: What.BLOCKED,
     Kind.MATCH: What.MATCH,
@@ -115,7 +119,7 @@ SLICE = np.dtype(
         ("endpoint", "<u8"),  # acting endpoint, or NO_ID
         ("publisher", "<u8"),  # with `number`: the record of a publish, receive, take or callback
         ("number", "<u8"),
-        ("value", "<u8"),  # size of a publish in bytes, or number of lost messages
+        ("value", "<u8"),  # size of a publish in bytes, or number of missed messages
     ]
 )
 
@@ -287,7 +291,7 @@ class _Spans:
         found = self._spans(what, at, at)
         found["is_instant"] = True
         found["endpoint"] = self._ids[at]
-        if what == What.LOST or what in _TRANSFERS:
+        if what in (What.LOST, What.SUPERSEDED, *_TRANSFERS):
             found["value"] = self._events["value"][at]
         if what in _TRANSFERS:
             self._name_record(found, at, self._ids[at])

@@ -99,6 +99,11 @@ class Subscription(Closing, Generic[Scalar]):
         """Number of messages known to be overwritten before they were taken."""
         return self._opened().lost()
 
+    @property
+    def superseded(self) -> int:
+        """Number of messages that were not taken as a newer one was found; only with depth 1."""
+        return self._opened().superseded()
+
     def close(self) -> None:
         """Destroy the subscription; a `take` that waits in another thread raises TransportError."""
         native, self._native = self._native, None

@@ -20,6 +20,7 @@ from rmw_manycore_py.platform.monitor.sample import (
     MESSAGES,
     QUEUED,
     REFUSED,
+    SUPERSEDED,
 )
 from rmw_manycore_py.platform.monitor.watch import Look
 
@@ -96,6 +97,7 @@ def _endpoint(look: Look, row: int, endpoint: Endpoint) -> Row:
         "copies": "" if copies is None else f"{copies:.2g}",
         "held": bytes_text(int(counts[HELD_BYTES])) if counts[HELD_BYTES] else "",
         "lost": int(counts[LOST] + counts[EXPIRED] + counts[REFUSED]),
+        "superseded": int(counts[SUPERSEDED]),
         "deadlines_missed": int(counts[DEADLINES]),
     }
 

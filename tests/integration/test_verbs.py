@@ -246,7 +246,7 @@ def publish_bursts() -> None:
 
 def test_echo_tells_of_lost_messages(start) -> None:
     start(peer_command(publish_bursts)).wait_for("ready")
-    echo = ("topic", "echo", "/bursts", "--qos-depth", "1")
+    echo = ("topic", "echo", "/bursts", "--qos-depth", "2")
     told = start(manycore_command(*echo))
     told.wait_for("^A message was lost!!!$")
     told.wait_for(r"^\ttotal count change:\d+$")

@@ -29,10 +29,10 @@ TEST_CASE("a displaced double is no loss") {
   queue.push({0, 0, 1});
   SubscriptionHeader & header = queue.header();
   static EndpointEntry entry;
-  entry.counters.lost = 0;
-  const auto lost = [&] { return lost_so_far(entry, header, queue.displaced()); };
+  entry.qos = keep_last(2);
+  const auto lost = [&] { return missed_so_far(entry, header, queue.displaced()).lost; };
   CHECK(lost() == 1);  // as far as is known yet
-  header.lost_beside_displaced = entry.counters.lost - queue.displaced();
+  header.missed_beside_displaced = entry.counters.lost - queue.displaced();
   CHECK(lost() == 0);
   stand_in_a_pop(header);
   CHECK(lost() == 0);
@@ -44,12 +44,13 @@ TEST_CASE("a displaced double is no loss") {
 TEST_CASE("a thread that asks for losses during a take is told of each displaced hint") {
   const TestPlatform platform;
   const auto process = platform.join(1);
-  const auto publisher = process->create_publisher(on_topic("/x", keep_last(1)));
-  const auto subscription = process->create_subscription(on_topic("/x", keep_last(1)));
+  const auto publisher = process->create_publisher(on_topic("/x", keep_last(2)));
+  const auto subscription = process->create_subscription(on_topic("/x", keep_last(2)));
   Inspection inspection(platform);
   SubscriptionHeader & header = inspection.header_of(*subscription);
-  publish(*publisher, 1);
-  publish(*publisher, 2);
+  for (uint64_t number = 1; number <= 3; ++number) {
+    publish(*publisher, number);
+  }
   stand_in_a_pop(header);
   std::atomic<pid_t> asking{0};
   std::atomic<bool> is_told{false};

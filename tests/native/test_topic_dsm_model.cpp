@@ -95,7 +95,8 @@ private:
       ++reader.taken;
     }
     if (!payload) {  // nothing is left to take, so everything is accounted for
-      REQUIRE(reader.taken + reader.subscription->lost() == reader.published);
+      const Subscription & subscription = *reader.subscription;
+      REQUIRE(reader.taken + subscription.lost() + subscription.superseded() == reader.published);
     }
   }
 

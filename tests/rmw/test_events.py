@@ -136,6 +136,22 @@ def test_messages_that_were_overwritten_are_reported_as_lost(node, start_peer, p
     assert sum(event.total_count_change for event in lost) == 7
 
 
+def test_messages_that_a_newer_one_replaced_are_not_lost(node, start_peer, peer_cluster):
+    """Known once a deeper subscription, which does lose some, has been told."""
+    if not IS_MANYCORE:
+        pytest.skip("Fast DDS does not count what its own history dropped")
+    received: dict[int, list] = {1: [], 3: []}
+    lost: dict[int, list] = {1: [], 3: []}
+    for depth in (1, 3):
+        told = SubscriptionEventCallbacks(message_lost=lost[depth].append)
+        heard = received[depth].append
+        node.create_subscription(String, "chatter", heard, depth, event_callbacks=told)
+    peer = start_peer(publish_ten, cluster=peer_cluster)
+    peer.wait_for("published")
+    spin_until(node, lambda: received[1] and lost[3] and lost[3][-1].total_count == 7)
+    assert lost[1] == []
+
+
 def publish_ten() -> None:
     with peer_node() as node:
         publisher = node.create_publisher(String, "chatter", 10)

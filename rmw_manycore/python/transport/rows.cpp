@@ -82,6 +82,7 @@ void bind_counter_values(nb::module_ & module) {
     .def_ro("messages", &CounterValues::messages)
     .def_ro("bytes", &CounterValues::bytes)
     .def_ro("lost", &CounterValues::lost)
+    .def_ro("superseded", &CounterValues::superseded)
     .def_ro("expired", &CounterValues::expired)
     .def_ro("refused", &CounterValues::refused)
     .def_ro("overwritten", &CounterValues::overwritten)

@@ -125,6 +125,7 @@ void bind_subscription(nb::module_ & module) {
     .def("has_data", &BoundSubscription::has_data)
     .def("matched", &BoundSubscription::matched)
     .def("lost", &BoundSubscription::lost)
+    .def("superseded", &BoundSubscription::superseded)
     .def("close", &BoundSubscription::close);
 }
 

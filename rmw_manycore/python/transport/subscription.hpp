@@ -69,6 +69,7 @@ public:
   /// The claim, if there is one, stays valid.
   void close() { shared_.reset(); }
   uint64_t lost() const { return subscription().lost(); }
+  uint64_t superseded() const { return subscription().superseded(); }
   bool has_data() const { return subscription().has_data(); }
 
 private:

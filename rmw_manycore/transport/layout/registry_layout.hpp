@@ -99,6 +99,9 @@ struct EndpointCounters {
   std::atomic<uint64_t> bytes;     ///< size of serialized data
   /// Subscription: messages overwritten before they were taken, or unreadable.
   std::atomic<uint64_t> lost;
+  /// Subscription that keeps the newest message only: messages not taken, of whose publisher it
+  /// found a newer one instead.
+  std::atomic<uint64_t> superseded;
   /// Subscription: messages past their lifespan when they were about to be taken.
   std::atomic<uint64_t> expired;
   std::atomic<uint64_t> refused;  ///< publisher: messages that did not fit
@@ -141,7 +144,7 @@ struct EndpointEntry {
   char type[name_bytes];
 };
 static_assert(
-  sizeof(EndpointEntry) == 736 && offsetof(EndpointEntry, topic_hash) == 40 &&
+  sizeof(EndpointEntry) == 744 && offsetof(EndpointEntry, topic_hash) == 40 &&
   offsetof(EndpointEntry, counters) == 160);
 
 /// One line of the topic table (ROS-lite2 Fig. 7).

@@ -27,8 +27,9 @@ struct SubscriptionHeader {
   uint8_t has_deadline;
   uint8_t reserved[2];
   std::atomic<uint32_t> resync;  ///< hints may be missing: scan all sources
-  /// `lost` minus the displaced hints when both were last known exactly; see lost_so_far().
-  std::atomic<uint64_t> lost_beside_displaced;
+  /// Missed messages minus the displaced hints when both were last known exactly; see
+  /// missed_so_far().
+  std::atomic<uint64_t> missed_beside_displaced;
 
   alignas(64) std::atomic<uint64_t> head;
   /// Pops that have begun, and that have moved `head`; written by the popper. What else moved it
@@ -75,7 +76,7 @@ struct SubscriptionHeader {
   }
 };
 static_assert(sizeof(SubscriptionHeader) == 256);
-static_assert(offsetof(SubscriptionHeader, lost_beside_displaced) == 32);
+static_assert(offsetof(SubscriptionHeader, missed_beside_displaced) == 32);
 
 /// Size of a subscription's head with a queue of so many slots.
 constexpr uint64_t subscription_block_bytes(uint32_t slot_count_log2) noexcept {

@@ -59,6 +59,7 @@ enum class TraceKind : uint16_t {
   arrive,      ///< a record has arrived in a receiving cluster; value: cluster
   drop,        ///< a record does not reach a receiving cluster; value: cluster
   in_place,    ///< written or read where the record lies, without a copy; value: publisher
+  superseded,  ///< value: number of messages
 };
 
 /// Slot and incarnation of an endpoint packed into one word.

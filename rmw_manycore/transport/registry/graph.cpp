@@ -12,9 +12,9 @@ namespace manycore {
 namespace {
 
 CounterValues values_of(const EndpointCounters & counters) {
-  return {counters.messages.load(), counters.bytes.load(),   counters.lost.load(),
-          counters.expired.load(),  counters.refused.load(), counters.overwritten.load(),
-          counters.dropped.load(),  counters.in_place.load()};
+  return {counters.messages.load(),    counters.bytes.load(),   counters.lost.load(),
+          counters.superseded.load(),  counters.expired.load(), counters.refused.load(),
+          counters.overwritten.load(), counters.dropped.load(), counters.in_place.load()};
 }
 
 /// An endpoint's activity, without what it holds, and what that is found by.
@@ -42,7 +42,9 @@ Activity activity_of(Registry & registry, const EndpointEntry & entry) {
   SubscriptionCopy copy;
   if (cluster != nullptr && copy.take(*cluster, entry.block.offset())) {
     const SubscriptionHeader & header = *copy;
-    activity.counters.lost = lost_so_far(entry, header, header.displaced().hints);
+    const Missed missed = missed_so_far(entry, header, header.displaced().hints);
+    activity.counters.lost = missed.lost;
+    activity.counters.superseded = missed.superseded;
     activity.capacity = header.depth;
     activity.queued = std::min(header.tail.load() - header.head.load(), activity.capacity);
     activity.deadlines_missed = header.deadline.missed(entry.qos.deadline_ns).total;

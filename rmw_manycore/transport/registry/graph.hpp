@@ -25,6 +25,7 @@ struct CounterValues {
   uint64_t messages = 0;     ///< published or taken
   uint64_t bytes = 0;        ///< size of serialized data
   uint64_t lost = 0;         ///< subscription: messages gone before they were taken
+  uint64_t superseded = 0;   ///< subscription: messages in whose place a newer one was found
   uint64_t expired = 0;      ///< subscription: messages past their lifespan when about to be taken
   uint64_t refused = 0;      ///< publisher: messages that did not fit
   uint64_t overwritten = 0;  ///< publisher: records recycled while a reader still wanted them
@@ -80,7 +81,7 @@ struct Activity {
   /// its process.
   uint64_t held_bytes = 0;
 };
-static_assert(sizeof(Activity) == 104);
+static_assert(sizeof(Activity) == 112);
 
 /// Consistent snapshots of the platform's processes, clusters, nodes and endpoints. Takes no
 /// registry lock. Thread-safe; not for use on the data path.

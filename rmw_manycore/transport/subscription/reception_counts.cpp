@@ -32,10 +32,10 @@ void ReceptionCounts::count_expired() noexcept {
   entry_.counters.expired.fetch_add(1, std::memory_order_relaxed);
 }
 
-/// Adds to both words whose maximum lost_so_far() returns.
+/// Adds to both sums whose maximum missed_so_far() returns.
 void ReceptionCounts::count_lost(uint64_t count) noexcept {
   entry_.counters.lost.fetch_add(count, std::memory_order_relaxed);
-  header_.lost_beside_displaced.fetch_add(count, std::memory_order_relaxed);
+  header_.missed_beside_displaced.fetch_add(count, std::memory_order_relaxed);
 }
 
 bool ReceptionCounts::needs_settling() const noexcept {
@@ -45,8 +45,15 @@ bool ReceptionCounts::needs_settling() const noexcept {
 void ReceptionCounts::note_settled(uint64_t displaced) noexcept {
   unsettled_ = false;
   settled_displaced_ = displaced;
-  header_.lost_beside_displaced.store(
-    entry_.counters.lost.load(std::memory_order_relaxed) - displaced, std::memory_order_relaxed);
+  const EndpointCounters & counters = entry_.counters;
+  header_.missed_beside_displaced.store(
+    counters.lost.load(std::memory_order_relaxed) +
+      counters.superseded.load(std::memory_order_relaxed) - displaced,
+    std::memory_order_relaxed);
+}
+
+uint64_t ReceptionCounts::superseded() const noexcept {
+  return missed_so_far(entry_, header_, header_.displaced().hints).superseded;
 }
 
 uint64_t ReceptionCounts::lost() const noexcept {
@@ -58,7 +65,7 @@ uint64_t ReceptionCounts::lost() const noexcept {
     std::this_thread::sleep_for(std::chrono::microseconds(50));
     displaced = header_.displaced();
   }
-  const uint64_t now = lost_so_far(entry_, header_, displaced.hints);
+  const uint64_t now = missed_so_far(entry_, header_, displaced.hints).lost;
   uint64_t reported = reported_lost_.load(std::memory_order_relaxed);
   while (reported < now && !reported_lost_.compare_exchange_weak(reported, now)) {
   }

@@ -9,7 +9,7 @@
 
 namespace manycore {
 
-/// Messages taken and lost by one subscription; see docs/design/losses.md. Used
+/// Messages taken and missed by one subscription; see docs/design/losses.md. Used
 /// by one thread at a time (the subscription's mutex), except lost().
 class ReceptionCounts {
 public:
@@ -32,6 +32,7 @@ public:
 
   /// Never decreases, although displaced hints may overestimate the losses.
   uint64_t lost() const noexcept;
+  uint64_t superseded() const noexcept;
 
 private:
   void count_lost(uint64_t count) noexcept;

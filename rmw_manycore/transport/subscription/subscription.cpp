@@ -16,13 +16,19 @@ namespace manycore {
 
 namespace {
 
-/// Traces the messages found lost during its lifetime, and wakes threads that wait for the event.
+/// Traces the messages found missing during its lifetime, and wakes threads that wait for the
+/// event of lost ones.
 class LossNotice {
 public:
   explicit LossNotice(Subscription::Impl & impl) noexcept : impl_(impl), before_(now()) {}
   ~LossNotice() {
-    if (const uint64_t lost = now() - before_; lost != 0) {
-      impl_.registry.tracer().note(TraceKind::lost, impl_.slot, 0, lost);
+    const auto [lost, superseded] = now();
+    if (superseded != before_.superseded) {
+      impl_.registry.tracer().note(
+        TraceKind::superseded, impl_.slot, 0, superseded - before_.superseded);
+    }
+    if (lost != before_.lost) {
+      impl_.registry.tracer().note(TraceKind::lost, impl_.slot, 0, lost - before_.lost);
       notify_event_watchers(impl_.registry, impl_.entry.process);
     }
   }
@@ -30,12 +36,15 @@ public:
   LossNotice & operator=(const LossNotice &) = delete;
 
 private:
-  uint64_t now() const noexcept {
-    return impl_.entry.counters.lost.load(std::memory_order_relaxed);
+  Missed now() const noexcept {
+    const EndpointCounters & counters = impl_.entry.counters;
+    return {
+      counters.lost.load(std::memory_order_relaxed),
+      counters.superseded.load(std::memory_order_relaxed)};
   }
 
   Subscription::Impl & impl_;
-  const uint64_t before_;
+  const Missed before_;
 };
 
 /// Frees, at its end, topic DSMs that waited for this subscription only.
@@ -159,6 +168,8 @@ bool Subscription::has_to_resync() const noexcept { return impl_->finder.has_to_
 uint64_t Subscription::waiting() const noexcept { return impl_->finder.waiting(); }
 
 uint64_t Subscription::lost() const noexcept { return impl_->counts.lost(); }
+
+uint64_t Subscription::superseded() const noexcept { return impl_->counts.superseded(); }
 
 MatchedCount Subscription::matched() const { return impl_->matches.matched(); }
 

@@ -51,6 +51,9 @@ public:
   /// as far as known: the losses of a publisher are counted at the latest when a later message of
   /// it is taken.
   uint64_t lost() const noexcept;
+  /// Messages not taken by a subscription that keeps the newest one only, and in whose place it
+  /// found a newer one of their publisher. They are not lost.
+  uint64_t superseded() const noexcept;
 
   MatchedCount matched() const;
   IncompatibleCount incompatible() const;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "transport/queue/subscriber_queue.hpp"
+#include "transport/registry/endpoint_blocks.hpp"
 #include "transport/topic_dsm/chunk_table.hpp"
 #include "transport/topic_dsm/last_published.hpp"
 #include "transport/topic_dsm/waiting_publisher.hpp"
@@ -178,8 +179,7 @@ Source::ClaimResult Source::look_at(uint64_t number, View & view) noexcept {
   if (!is_for_us(record)) {
     return ClaimResult::not_ours;
   }
-  count_missing(record.publication_sequence_number - 1);
-  account_for(record.publication_sequence_number);
+  count_gap(record.publication_sequence_number);
   if (is_expired(record)) {
     return ClaimResult::expired;
   }
@@ -205,7 +205,7 @@ bool Source::note_taken(uint64_t number) noexcept {
   if (finished) {
     const LastPublished published = last_published();
     if (published.exact) {
-      count_missing(published.sequence);
+      count_lost(published.sequence);
     }
   }
   return finished;
@@ -289,9 +289,19 @@ bool Source::list_waiting(std::vector<Waiting> & out) {
   return end_look() || finished;
 }
 
-void Source::count_missing(uint64_t last_sequence) noexcept {
+void Source::count_lost(uint64_t last_sequence) noexcept {
   if (const uint64_t missing = account_for(last_sequence); missing != 0) {
     subscription_->counters.lost.fetch_add(missing, std::memory_order_relaxed);
+  }
+}
+
+/// What a KEEP_LAST 1 subscription did not take is not lost where it finds a newer message.
+void Source::count_gap(uint64_t found_sequence) noexcept {
+  const uint64_t counted = account_for(found_sequence);
+  if (counted > 1) {  // one is the message that was found
+    EndpointCounters & counters = subscription_->counters;
+    (keeps_newest_only(*subscription_) ? counters.superseded : counters.lost)
+      .fetch_add(counted - 1, std::memory_order_relaxed);
   }
 }
 
@@ -329,7 +339,7 @@ Source::Settled Source::settle() noexcept {
   const bool is_settled = published.exact && arrived().is_settled(published.number, known);
   bool is_over = false;
   if (is_settled) {
-    count_missing(published.sequence);
+    count_lost(published.sequence);
     is_over = note_taken(published.number) && !was_finished;
   }
   is_over = end_look() || is_over;

@@ -129,7 +129,9 @@ private:
     const GenerationEntry & generation, const transfer::Arrived & arrived, uint64_t last,
     std::vector<Waiting> & out);
   /// Counts messages up to this publication sequence number as lost, unless they are accounted for.
-  void count_missing(uint64_t last_sequence) noexcept;
+  void count_lost(uint64_t last_sequence) noexcept;
+  /// Counts messages before a newer one that was found.
+  void count_gap(uint64_t found_sequence) noexcept;
   /// Raises Seat::accounted; returns by how much.
   uint64_t account_for(uint64_t last_sequence) noexcept;
   /// True if the publisher is gone and everything it left is taken.

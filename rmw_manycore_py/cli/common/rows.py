@@ -56,6 +56,7 @@ def counters_row(counters: _transport.CounterValues) -> dict[str, int]:
         "messages": counters.messages,
         "bytes": counters.bytes,
         "lost": counters.lost,
+        "superseded": counters.superseded,
         "expired": counters.expired,
         "refused": counters.refused,
         "overwritten": counters.overwritten,

@@ -51,6 +51,15 @@ def losses(endpoints: Iterable[EndpointInfo]) -> list[Row]:
     ]
 
 
+def superseded(endpoints: Iterable[EndpointInfo]) -> list[Row]:
+    """Return the number of superseded messages of each endpoint that has any."""
+    return [
+        {"node": _owner(e), "topic": e.topic, "count": e.counters.superseded}
+        for e in endpoints
+        if e.counters.superseded
+    ]
+
+
 def copies(endpoints: Iterable[EndpointInfo]) -> list[Row]:
     """Return how often each endpoint with large messages copies them, and what readers hold."""
     return [

@@ -81,7 +81,8 @@ def process_rows(look: Look) -> list[Row]:
 def topic_rows(look: Look) -> list[Row]:
     """Return a row per topic with its publish rates per second, largest first.
 
-    `lost` counts the messages its current subscriptions have missed. `queued` and `capacity` are
+    `lost` counts the messages its current subscriptions have missed, `superseded` those replaced
+    by a newer one. `queued` and `capacity` are
     those of its fullest queue. `p99_us` is None unless the platform is traced, `copies` (of a
     message on its way to a subscription) unless messages are large; readers hold `held` bytes.
     """
@@ -97,6 +98,7 @@ def topic_rows(look: Look) -> list[Row]:
                 "capacity": load.capacity,
                 "queue_percent": round(100 * load.fill, 1),
                 "lost": load.lost,
+                "superseded": load.superseded,
                 "copies": look.loads.copies.get(name),
                 "held": look.loads.held_bytes.get(name, 0),
                 "p99_us": None if latency is None else round(latency.p99_us, 1),

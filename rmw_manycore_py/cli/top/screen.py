@@ -84,7 +84,8 @@ def _rest(count: int, noun: str) -> Text:
 
 
 def _clusters(rows: Sequence[Row]) -> Table:
-    table = new_table("#cluster", "SMEM", "#used", "#of", "#receive thread", "#CPU", "#messages/s")
+    columns = ("#cluster", "SMEM", "#used", "#of", "#receive thread", "#CPU", "#messages/s")
+    table = new_table(*columns, expendable=("SMEM", "receive thread"))
     for row in rows:
         percent = 100 * row["used"] / row["smem_size"] if row["smem_size"] else 0.0
         pid = row["receive_thread_pid"]
@@ -101,7 +102,9 @@ def _clusters(rows: Sequence[Row]) -> Table:
 
 
 def _nodes(rows: Sequence[Row]) -> Table:
-    table = new_table("#pid", "#cluster", "#core", "#host CPU", "#CPU", "", "node")
+    columns = ("#pid", "#cluster", "#core", "#host CPU", "#CPU", "", "node")
+    table = new_table(*columns, expendable=("", "host CPU", "pid", "core", "cluster"))
+    table.columns[-1].no_wrap = True
     for row in rows:
         places = (row["pid"], row["cluster"], row["core"], row["host_cpu"])
         texts = ("-" if place is None else str(place) for place in places)
@@ -116,8 +119,11 @@ def _nodes(rows: Sequence[Row]) -> Table:
 
 def _topics(rows: Sequence[Row]) -> Table:
     table = new_table(
-        "#messages/s", "#bytes/s", "#p99", "#queue", "", "#lost", "#copies", "#held", "topic"
+        *("#messages/s", "#bytes/s", "#p99", "#queue", "", "#lost", "#superseded"),
+        *("#copies", "#held", "topic"),
+        expendable=("", "copies", "held", "superseded", "p99", "queue", "bytes/s"),
     )
+    table.columns[-1].no_wrap = True
     for row in rows:
         p99 = "-" if row["p99_us"] is None else time_text(row["p99_us"])
         queue = f"{row['queued']}/{row['capacity']}" if row["capacity"] else "-"
@@ -127,7 +133,8 @@ def _topics(rows: Sequence[Row]) -> Table:
             p99,
             queue,
             bar(row["queue_percent"], 10),
-            Text(str(row["lost"]), style="red" if row["lost"] else ""),
+            Text(str(row["lost"]), style="bold red" if row["lost"] else ""),
+            str(row["superseded"] or "-"),
             "-" if row["copies"] is None else f"{row['copies']:.2g}",
             size_text(row["held"]) if row["held"] else "-",
             row["topic"],

@@ -22,6 +22,7 @@ from rmw_manycore_py.platform.monitor.sample import (
     MESSAGES,
     QUEUED,
     REFUSED,
+    SUPERSEDED,
     Counts,
     Sample,
     aligned,
@@ -38,6 +39,7 @@ class TopicLoad(NamedTuple):
     queued: int  # in the fullest queue
     capacity: int  # of that queue
     lost: int  # missed by its current subscriptions, or refused
+    superseded: int  # replaced by a newer one for its current subscriptions
     losses_per_s: float
 
     @property
@@ -167,7 +169,11 @@ class Loads:
 
     def _topics(self, rates_hz: Rates, bytes_per_s: Rates) -> dict[str, TopicLoad]:
         queued, capacity = self.fullest
-        columns = (rates_hz, bytes_per_s, queued, capacity, self.lost, self.losses_per_s)
+        superseded = self.after.totals(SUPERSEDED, publishers=False)
+        columns = (
+            *(rates_hz, bytes_per_s, queued, capacity),
+            *(self.lost, superseded, self.losses_per_s),
+        )
         rows = zip(*(column.tolist() for column in columns), strict=True)
         return dict(zip(self.graph.topics, map(TopicLoad._make, rows), strict=True))
 

@@ -20,6 +20,7 @@ Counts = NDArray[np.int64]
     MESSAGES,
     BYTES,
     LOST,
+    SUPERSEDED,
     EXPIRED,
     REFUSED,
     OVERWRITTEN,
@@ -29,8 +30,8 @@ Counts = NDArray[np.int64]
     CAPACITY,
     DEADLINES,
     HELD_BYTES,
-) = range(12)
-_WORDS = 13
+) = range(13)
+_WORDS = 14
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 from rich.text import Text
 
 import rmw_manycore_py.cli
@@ -22,6 +23,7 @@ PRINT_RAW = {
     "doctor/__init__.py",
     "env.py",
     "logs.py",
+    "status.py",
     "top/__init__.py",
 }
 
@@ -44,6 +46,25 @@ def test_cells_are_no_markup(capsys: pytest.CaptureFixture[str]) -> None:
     table.add_row("[/red]\x07\n[b]", Text("1\x1b", "red"))
     print_table(table)
     assert capsys.readouterr().out.split("\n")[1].split() == [r"[/red]\x07\n[b]", r"1\x1b"]
+
+
+@pytest.mark.parametrize(
+    ("width", "shown"),
+    [
+        (60, ["pid", "program", "node", "state"]),
+        (40, ["pid", "node", "state"]),
+        (28, ["node", "state"]),
+    ],
+)
+def test_in_a_narrow_terminal_columns_give_way_to_names(width: int, shown: list[str]) -> None:
+    table = new_table("#pid", "program", "node", "state", expendable=("program", "pid"))
+    table.add_row("12345", "my_robot detector", "/robot/detector", "alive")
+    console = Console(width=width)
+    with console.capture() as capture:
+        console.print(table)
+    head, row = capture.get().splitlines()
+    assert head.split() == shown
+    assert "/robot/detector" in row
 
 
 def test_verbs_print_through_it() -> None:

@@ -16,6 +16,7 @@ COUNTERS = {
     "messages": 9,
     "bytes": 90,
     "lost": 0,
+    "superseded": 0,
     "expired": 0,
     "refused": 0,
     "overwritten": 0,
@@ -94,7 +95,8 @@ def test_nodes_come_with_their_place() -> None:
 
 
 def test_only_losses_are_reported() -> None:
-    lossy = endpoint("/a/b", "subscription", "topic", "/t", "x/msg/X", lost=3)
+    lossy = endpoint("/a/b", "subscription", "topic", "/t", "x/msg/X", lost=3, superseded=2)
     assert view.losses([*ENDPOINTS, lossy]) == [
         {"node": "/a/b", "topic": "/t", "counter": "lost", "count": 3}
     ]
+    assert view.superseded([*ENDPOINTS, lossy]) == [{"node": "/a/b", "topic": "/t", "count": 2}]

@@ -31,7 +31,7 @@ def endpoint(number: int, kind: Any, topic: str = "/t", role: Any = "topic") -> 
 
 def sample(time_s: float, rows: list[tuple[Endpoint, list[int]]], cpu_ns: dict[int, int]) -> Sample:
     graph = Graph("p", 5, 16, 1 << 20, (TALKER, LISTENER), tuple(end for end, _ in rows))
-    counts = np.zeros((len(rows), 12), dtype=np.int64)
+    counts = np.zeros((len(rows), 13), dtype=np.int64)
     for row, values in enumerate(values for _, values in rows):
         counts[row, : len(values)] = values
     cluster: Any = SimpleNamespace(id=1, messages=int(10 * time_s), receive_thread_pid=9)
@@ -47,7 +47,7 @@ LOADS = Loads(
         [
             (SERVICE, [100, 100]),
             (B, [2, 20]),
-            (C, [3, 30, 4, 0, 0, 0, 0, 0, 3, 10, 2]),
+            (C, [3, 30, 4, 6, 0, 0, 0, 0, 0, 3, 10, 2]),
             (A, [9, 90]),
         ],
         {70: 1_500_000_000, 71: 7},
@@ -60,7 +60,7 @@ def test_rates_are_differences() -> None:
     assert name == "/t"
     assert (load.rate_hz, load.bytes_per_s, load.message_bytes) == (3.0, 30.0, 10.0)
     assert (load.queued, load.capacity, load.fill) == (3, 10, 0.3)
-    assert (load.lost, load.losses_per_s) == (4, 1.5)
+    assert (load.lost, load.losses_per_s, load.superseded) == (4, 1.5, 6)
 
 
 LARGE = 1 << 20
@@ -70,8 +70,8 @@ LARGE = 1 << 20
     ("published", "taken", "copies"),
     [
         ([4, 4 * LARGE], [8, 8 * LARGE], 2.0),
-        ([4, 4 * LARGE], [8, 8 * LARGE, 0, 0, 0, 0, 0, 6], 1.25),
-        ([4, 4 * LARGE, 0, 0, 0, 0, 0, 4], [8, 8 * LARGE, 0, 0, 0, 0, 0, 8], 0.0),
+        ([4, 4 * LARGE], [8, 8 * LARGE, 0, 0, 0, 0, 0, 0, 6], 1.25),
+        ([4, 4 * LARGE, 0, 0, 0, 0, 0, 0, 4], [8, 8 * LARGE, 0, 0, 0, 0, 0, 0, 8], 0.0),
         ([4, 4 * LARGE], [0, 0], None),
         ([4, 40], [8, 80], None),
     ],
@@ -85,7 +85,7 @@ def test_copies_are_those_of_the_publisher_and_of_a_subscription(
 
 
 def test_memory_that_readers_hold_is_that_of_the_publishers() -> None:
-    rows = [(A, [*([0] * 11), 7]), (B, [*([0] * 11), 5]), (C, [*([0] * 11), 7])]
+    rows = [(A, [*([0] * 12), 7]), (B, [*([0] * 12), 5]), (C, [*([0] * 12), 7])]
     assert Loads(sample(0.0, [], {}), sample(1.0, rows, {})).held_bytes == {"/t": 12}
 
 
