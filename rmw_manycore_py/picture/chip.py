@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rmw_manycore_py.picture.arcs import Arc, arcs_of
 from rmw_manycore_py.picture.drawing import draw
 from rmw_manycore_py.picture.layout import Layout, lay_out
 from rmw_manycore_py.picture.marks import Marks, marks_of
@@ -18,7 +17,6 @@ class Chip:
 
     title: str
     layout: Layout
-    arcs: tuple[Arc, ...]
 
     @classmethod
     def of(cls, look: Look) -> Chip:
@@ -26,7 +24,7 @@ class Chip:
         graph = look.graph
         present = [cluster.id for cluster in look.loads.after.clusters]
         layout = lay_out(graph, present, look.dead, look.workers)
-        return cls(f"platform {graph.platform}", layout, arcs_of(graph, layout))
+        return cls(f"platform {graph.platform}", layout)
 
     def fits(self, look: Look, earlier: Look) -> bool:
         """Return whether this layout, made for the earlier look, also fits the later one."""
@@ -39,8 +37,8 @@ class Chip:
 
     def marks(self, look: Look) -> Marks:
         """Return the current state of all elements."""
-        return marks_of(look, self.layout, self.arcs)
+        return marks_of(look, self.layout)
 
     def svg(self, marks: Marks, *, standalone: bool = True) -> str:
         """Return the picture as SVG."""
-        return draw(self.title, self.layout, self.arcs, marks, standalone=standalone)
+        return draw(self.title, self.layout, marks, standalone=standalone)

@@ -3,39 +3,40 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from html import escape
 from importlib.resources import files
 
 from rmw_manycore_py.errors import shorten
 from rmw_manycore_py.picture.arcs import Arc
-from rmw_manycore_py.picture.geometry import Rect
-from rmw_manycore_py.picture.layout import (
-    CELL_HEAD,
-    GAP,
-    NODE_HEIGHT,
-    WORKER_SIDE,
-    Cell,
-    ClusterBox,
-    Layout,
-    NodeBox,
-)
+from rmw_manycore_py.picture.geometry import Rect, head_of, path_of
+from rmw_manycore_py.picture.layout import Cell, ClusterBox, Layout, NodeBox
 from rmw_manycore_py.picture.marks import Mark, Marks
-from rmw_manycore_py.picture.texts import fitted
+from rmw_manycore_py.picture.plan import CELL_HEAD, GAP, NODE_HEIGHT, WORKER_SIDE
+from rmw_manycore_py.picture.texts import BOLD, fitted
 
-# More labels would overlap; the table beside the picture lists all topics.
-MAX_LABELS = 40
 _NO_MARK: Mark = {}
+_VARIABLE = re.compile(r"(--[\w-]+): ([^;]+);")
+_WITH_VARIABLES = re.compile(r"[\w-]+: [^;{}]*var\(--[^;{}]*;")
 
 
 def stylesheet() -> str:
-    """Return the style sheet, for light and dark backgrounds."""
-    return files(__package__).joinpath("chip.css").read_text()
+    """Return the style sheet, for light and dark backgrounds.
+
+    Programs that know no variables read the colours of the light one.
+    """
+    text = files(__package__).joinpath("chip.css").read_text()
+    light = dict(_VARIABLE.findall(text[: text.index("}")]))
+
+    def with_light_before(found: re.Match[str]) -> str:
+        plain = re.sub(r"var\((--[\w-]+)\)", lambda name: light[name[1]], found[0])
+        return f"{plain} {found[0]}"
+
+    return _WITH_VARIABLES.sub(with_light_before, text)
 
 
-def draw(
-    title: str, layout: Layout, arcs: tuple[Arc, ...], marks: Marks, *, standalone: bool = True
-) -> str:
+def draw(title: str, layout: Layout, marks: Marks, *, standalone: bool = True) -> str:
     """Return the SVG; with `standalone`, including its style sheet."""
     width, height = layout.size
     return "\n".join(
@@ -47,9 +48,9 @@ def draw(
             if standalone
             else "",
             *(line for box in layout.clusters for line in _cluster(box, marks)),
-            *(line for arc in arcs for line in _arc(arc, marks)),
+            *(line for arc in layout.arcs for line in _arc(arc, marks)),
             *(line for node in layout.nodes for line in _node(node)),
-            *(line for arc in arcs[:MAX_LABELS] for line in _label(arc, marks)),
+            *(line for arc in layout.arcs for line in _label(arc, marks)),
             "</svg>",
         )
     )
@@ -70,26 +71,30 @@ def _cluster(box: ClusterBox, marks: Marks) -> Iterator[str]:
         yield _right_text(f"k{box.id}-smem", box.rect.x + box.rect.width - 12, y, marks)
         yield _rect(receive, box.receive_thread, 3, f"k{box.id}-rt")
         yield (
-            f'<text id="k{box.id}-rt-text" class="small" x="{x + 6}" y="{box.rect.y + 54}">'
+            f'<text id="k{box.id}-rt-text" class="small on-cell" x="{x + 6}" y="{box.rect.y + 54}">'
             f"{_content(marks, f'k{box.id}-rt-text')}</text>"
         )
     for cell in box.cells:
         yield from _cell(cell, marks)
+    for core, tile in box.free.items():
+        yield _rect("tile", tile, 2, title=f"core {core}: free")
+        yield f'<text class="number" x="{tile.centre[0]:.1f}" y="{tile.y + 10.5:.1f}">{core}</text>'
     yield "</g>"
 
 
 def _cell(cell: Cell, marks: Marks) -> Iterator[str]:
     x, y = cell.rect.x, cell.rect.y
-    name = "no core" if cell.core is None else f"core {cell.core}"
+    name = "no core" if cell.plan.core is None else f"core {cell.plan.core}"
     yield _rect(_class(marks, cell.id, "cell"), cell.rect, 4, cell.id)
-    yield f'<text class="small" x="{x + 6}" y="{y + 13}">{name}</text>'
-    if cell.members:
-        yield _right_text(cell.cpu_id, x + cell.rect.width - 6, y + 13, marks)
+    yield f'<text class="small on-cell" x="{x + 6:.1f}" y="{y + 13:.1f}">{name}</text>'
+    if cell.plan.living:
+        yield _right_text(cell.cpu_id, x + cell.rect.width - 6, y + 13, marks, "on-cell")
     if cell.hidden:
         below = y + CELL_HEAD + len(cell.nodes) * NODE_HEIGHT + 12
-        yield f'<text class="small" x="{x + 6}" y="{below}">+{cell.hidden} more</text>'
+        at = f'x="{x + 6:.1f}" y="{below:.1f}"'
+        yield f'<text class="small on-cell" {at}>+{cell.hidden} more</text>'
     bottom = y + cell.rect.height - WORKER_SIDE - 4
-    for place, pid in enumerate(cell.workers):
+    for place, pid in enumerate(cell.plan.workers):
         rect = Rect(x + GAP + place * (WORKER_SIDE + 2), bottom, WORKER_SIDE, WORKER_SIDE)
         style = _class(marks, f"w{pid}", "worker")
         yield _rect(style, rect, 1, f"w{pid}", f"NDT worker, pid {pid}")
@@ -111,24 +116,27 @@ def _node(node: NodeBox) -> Iterator[str]:
 
 
 def _arc(arc: Arc, marks: Marks) -> Iterator[str]:
-    path = "".join(
-        "M{} {}Q{} {} {} {}".format(*map(_number, curve.numbers())) for curve in arc.curves
-    )
-    name = _text(arc.topic)
+    path = "".join(map(path_of, arc.lines))
+    name, names = _text(arc.wire.topics[0]), _text(", ".join(arc.wire.topics))
     yield (
         f'<g id="{_text(arc.id)}" class="{_class(marks, arc.id, "topic")}" data-topic="{name}" '
-        f'tabindex="0" role="button" aria-label="topic {name}"><title>{name}</title>'
-        f'<path class="touch" d="{path}"/><path class="line" d="{path}"/></g>'
+        f'tabindex="0" role="button" aria-label="topic {names}"><title>{names}</title>'
+        f'<path class="touch" d="{path}"/><path class="line" d="{path}"/>'
+        f'<path class="head" d="{"".join(map(head_of, arc.lines))}"/></g>'
     )
 
 
 def _label(arc: Arc, marks: Marks) -> Iterator[str]:
-    x, y = arc.label_at
-    yield (
-        f'<text class="topic-name" x="{x:.1f}" y="{y:.1f}">{_text(arc.topic)}</text>'
-        f'<text id="{_text(arc.label_id)}" class="topic-load" x="{x:.1f}" y="{y + 12:.1f}">'
-        f"{_content(marks, arc.label_id)}</text>"
-    )
+    """Yield the name above the line, and the load below."""
+    if arc.label is not None:
+        x, y = arc.label.centre
+        name = fitted(arc.name, arc.label.width, BOLD)
+        yield (
+            f'<g class="label" data-of="{_text(arc.id)}">'
+            f'<text class="topic-name" x="{x:.1f}" y="{y - 4:.1f}">{_text(name)}</text>'
+            f'<text id="{_text(arc.label_id)}" class="topic-load" x="{x:.1f}" y="{y + 11:.1f}">'
+            f"{_content(marks, arc.label_id)}</text></g>"
+        )
 
 
 def _rect(style: str, rect: Rect, radius: int, own_id: str = "", title: str = "") -> str:
@@ -140,9 +148,9 @@ def _rect(style: str, rect: Rect, radius: int, own_id: str = "", title: str = ""
     )
 
 
-def _right_text(own_id: str, x: float, y: float, marks: Marks) -> str:
-    place = f'x="{x:.1f}" y="{y:.1f}"'
-    return f'<text id="{own_id}" class="small right" {place}>{_content(marks, own_id)}</text>'
+def _right_text(own_id: str, x: float, y: float, marks: Marks, style: str = "") -> str:
+    place = f'class="small right {style}" x="{x:.1f}" y="{y:.1f}"'
+    return f'<text id="{own_id}" {place}>{_content(marks, own_id)}</text>'
 
 
 def _class(marks: Marks, own_id: str, otherwise: str) -> str:
@@ -151,10 +159,6 @@ def _class(marks: Marks, own_id: str, otherwise: str) -> str:
 
 def _content(marks: Marks, own_id: str) -> str:
     return _text(str(marks.get(own_id, _NO_MARK).get("text", "")))
-
-
-def _number(value: float) -> str:
-    return f"{value:g}"
 
 
 def _text(text: str) -> str:

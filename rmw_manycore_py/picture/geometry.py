@@ -1,14 +1,16 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Rectangles and curves, in viewBox units."""
+"""Rectangles and lines, in viewBox units."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 Point = tuple[float, float]
-_BEND = 0.16  # offset from the straight line, relative to a curve's length
+Line = tuple[Point, ...]  # horizontal and vertical pieces in turn
+_BEND = 5.0  # radius of corners
+_HEAD_LENGTH, _HEAD_HALF = 8.0, 4.0
 
 
 @dataclass(frozen=True)
@@ -21,53 +23,52 @@ class Rect:
     height: float
 
     @property
+    def right(self) -> float:
+        """Right edge."""
+        return self.x + self.width
+
+    @property
+    def bottom(self) -> float:
+        """Lower edge."""
+        return self.y + self.height
+
+    @property
     def centre(self) -> Point:
         """Centre."""
         return self.x + self.width / 2, self.y + self.height / 2
 
-    def edge_towards(self, target: Point) -> Point:
-        """Return where the line from the centre to an outside point crosses the edge."""
-        (x, y), (target_x, target_y) = self.centre, target
-        dx, dy = target_x - x, target_y - y
-        reach = max(abs(dx) / (self.width / 2), abs(dy) / (self.height / 2))
-        return (x, y) if reach == 0 else (x + dx / reach, y + dy / reach)
+
+def without_repetition(points: Sequence[Point]) -> Line:
+    """Return a line without pieces of no length."""
+    return tuple(a for a, b in pairwise([*points, (-1.0, -1.0)]) if a != b)
 
 
-@dataclass(frozen=True)
-class Curve:
-    """A quadratic Bezier curve."""
-
-    start: Point
-    control: Point
-    end: Point
-
-    @property
-    def middle(self) -> Point:
-        """Point at half the parameter."""
-        (x0, y0), (x1, y1), (x2, y2) = self.start, self.control, self.end
-        return (x0 + 2 * x1 + x2) / 4, (y0 + 2 * y1 + y2) / 4
-
-    def numbers(self) -> list[float]:
-        """Return the coordinates of its three points."""
-        return [
-            round(value, 1) for point in (self.start, self.control, self.end) for value in point
-        ]
+def path_of(line: Line) -> str:
+    """Return the SVG path of a line, with rounded corners."""
+    parts = ["M{:.1f} {:.1f}".format(*line[0])]
+    for before, corner, after in zip(line, line[1:], line[2:], strict=False):
+        into, out = _towards(corner, before), _towards(corner, after)
+        parts.append("L{:.1f} {:.1f}Q{:.1f} {:.1f} {:.1f} {:.1f}".format(*into, *corner, *out))
+    parts.append("L{:.1f} {:.1f}".format(*line[-1]))
+    return "".join(parts)
 
 
-def connect(start: Rect, end: Rect) -> Curve:
-    """Return a curve between two rectangles; the reverse curve bends to the other side."""
-    control = _bent(start.centre, end.centre)
-    return Curve(start.edge_towards(control), control, end.edge_towards(control))
+def head_of(line: Line) -> str:
+    """Return the SVG path of the arrowhead at the end of a line."""
+    (x0, y0), (x, y) = line[-2:]
+    length = max(abs(x - x0) + abs(y - y0), 1e-9)
+    dx, dy = (x - x0) / length, (y - y0) / length
+    back_x, back_y = x - dx * _HEAD_LENGTH, y - dy * _HEAD_LENGTH
+    side_x, side_y = dy * _HEAD_HALF, dx * _HEAD_HALF
+    return (
+        f"M{x:.1f} {y:.1f}L{back_x + side_x:.1f} {back_y + side_y:.1f}"
+        f"L{back_x - side_x:.1f} {back_y - side_y:.1f}Z"
+    )
 
 
-def mean(points: Iterable[Point]) -> Point:
-    """Return the centroid."""
-    found = list(points)
-    return sum(x for x, _ in found) / len(found), sum(y for _, y in found) / len(found)
-
-
-def _bent(start: Point, end: Point) -> Point:
-    dx, dy = end[0] - start[0], end[1] - start[1]
-    if math.hypot(dx, dy) == 0:
-        return start[0], start[1] - 1
-    return (start[0] + end[0]) / 2 - dy * _BEND, (start[1] + end[1]) / 2 + dx * _BEND
+def _towards(corner: Point, other: Point) -> Point:
+    """Return where the rounding of a corner begins: at most half way to the next one."""
+    dx, dy = other[0] - corner[0], other[1] - corner[1]
+    length = abs(dx) + abs(dy)
+    reach = min(_BEND, length / 2) / length
+    return corner[0] + dx * reach, corner[1] + dy * reach

@@ -1,29 +1,29 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Layout of clusters, cores and nodes, as in Fig. 11 of ROS-lite2."""
+"""Layout of clusters, cores, nodes and topics, after Fig. 11 of ROS-lite2."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from rmw_manycore_py.picture.arcs import Arc, Wiring
+from rmw_manycore_py.picture.frame import PAD, Frame, bands_of
 from rmw_manycore_py.picture.geometry import Rect
+from rmw_manycore_py.picture.plan import (
+    CELL_HEAD,
+    GAP,
+    MAX_NODES_OF_CELL,
+    NODE_HEIGHT,
+    CellPlan,
+    ClusterPlan,
+    plan_clusters,
+)
+from rmw_manycore_py.picture.wires import wires_of
 from rmw_manycore_py.platform.monitor.graph import Graph, Member
 
-GAP = 6.0
-PAD = 12.0
-CLUSTER_GAP = 72.0
-HEAD = 66.0  # height of a cluster's title, SMEM bar and receive thread
-CELL_HEAD = 18.0
-NODE_HEIGHT = 20.0
-WORKER_SIDE = 8.0
-UNUSED_WIDTH, UNUSED_HEIGHT = 190.0, 34.0
-# With more cores, only those in use are drawn.
-MAX_EMPTY_CORES = 16
-MAX_NODES_OF_CELL = 8
-_WIDE, _NARROW = 132.0, 92.0
-_MANY_CELLS = 32
+UNUSED_WIDTH, UNUSED_HEIGHT = 150.0, 30.0
+_MIN_WIDTH = 500.0
 _BRIDGE = "_manycore_bridge"  # prefix of its node names
 
 
@@ -55,26 +55,26 @@ class NodeBox:
 
 @dataclass(frozen=True)
 class Cell:
-    """A core, or a process without a core."""
+    """A core in use, or a process without a core."""
 
-    id: str
-    cluster: int
-    core: int | None
-    members: tuple[Member, ...]
-    workers: tuple[int, ...]  # pids
+    plan: CellPlan
     nodes: tuple[NodeBox, ...]
-    hidden: int  # number of nodes that do not fit
     rect: Rect
 
-    @cached_property
-    def has_dead(self) -> bool:
-        """Whether one of its nodes has died."""
-        return any(node.is_dead for node in self.nodes)
+    @property
+    def id(self) -> str:
+        """Element id."""
+        return self.plan.id
 
     @cached_property
     def cpu_id(self) -> str:
         """Element id of its CPU usage."""
         return f"{self.id}-cpu"
+
+    @property
+    def hidden(self) -> int:
+        """Number of nodes that do not fit."""
+        return len(self.plan.names) - len(self.nodes)
 
 
 @dataclass(frozen=True)
@@ -84,6 +84,7 @@ class ClusterBox:
     id: int
     is_used: bool
     cells: tuple[Cell, ...]
+    free: Mapping[int, Rect]  # cores without a node
     rect: Rect
 
     @property
@@ -99,18 +100,11 @@ class ClusterBox:
 
 @dataclass(frozen=True)
 class Layout:
-    """The picture without topics."""
+    """The picture, without what changes between looks."""
 
     clusters: tuple[ClusterBox, ...]
-
-    @cached_property
-    def size(self) -> tuple[float, float]:
-        """Width and height."""
-        rects = [cluster.rect for cluster in self.clusters]
-        return (
-            max(rect.x + rect.width for rect in rects) + PAD,
-            max(rect.y + rect.height for rect in rects) + PAD,
-        )
+    arcs: tuple[Arc, ...]
+    size: tuple[float, float]  # width and height
 
     @cached_property
     def cells(self) -> tuple[Cell, ...]:
@@ -121,35 +115,6 @@ class Layout:
     def nodes(self) -> tuple[NodeBox, ...]:
         """All drawn nodes."""
         return tuple(node for cell in self.cells for node in cell.nodes)
-
-
-@dataclass(frozen=True)
-class _Plan:
-    """A cell before placement."""
-
-    core: int | None
-    living: tuple[Member, ...]
-    dead: tuple[Member, ...]
-    workers: tuple[int, ...]
-
-    @property
-    def names(self) -> list[tuple[str, Member, bool]]:
-        """Its nodes: name, process, and whether the process is dead."""
-        sides = ((self.living, False), (self.dead, True))
-        return [
-            (name, member, is_dead)
-            for members, is_dead in sides
-            for member in members
-            for name in member.shown_names
-        ]
-
-    @property
-    def height(self) -> float:
-        """Required height."""
-        count = len(self.names)
-        rows = min(count, MAX_NODES_OF_CELL) + (count > MAX_NODES_OF_CELL)
-        bottom = WORKER_SIDE + GAP if self.workers else 0.0
-        return CELL_HEAD + rows * NODE_HEIGHT + bottom + (4 if rows else 2)
 
 
 def lay_out(
@@ -163,76 +128,27 @@ def lay_out(
     :param present: existing clusters, also without nodes.
     :param workers: worker pids by the pid of their coordinator.
     """
-    used = {member.cluster for member in (*graph.members, *dead)} | set(present)
-    plans = {cluster: _plans(graph, cluster, dead, workers or {}) for cluster in sorted(used)}
-    boxes: list[ClusterBox] = []
-    y = PAD
-    columns = max(1, math.ceil(math.sqrt(len(plans)))) if plans else 1
-    clusters = sorted(plans)
-    for start in range(0, len(clusters), columns):
-        row = clusters[start : start + columns]
-        x = PAD
-        for cluster in row:
-            boxes.append(_place_cluster(cluster, plans[cluster], x, y))
-            x += boxes[-1].rect.width + CLUSTER_GAP
-        y = max(box.rect.y + box.rect.height for box in boxes) + CLUSTER_GAP
-    unused = sorted(set(range(1, graph.cluster_count + 1)) - used)
-    return Layout((*boxes, *_place_unused(unused, y if boxes else PAD)))
+    plans = plan_clusters(graph, present, dead, workers)
+    wiring = Wiring(plans, bands_of(plans), wires_of(graph, plans))
+    frame = wiring.frame
+    boxes = [_cluster(plan, index, frame) for index, plan in enumerate(plans)]
+    used = {plan.id for plan in plans}
+    idle = [cluster for cluster in range(1, graph.cluster_count + 1) if cluster not in used]
+    width = max(frame.width, _MIN_WIDTH)
+    left = boxes[0].rect.x if boxes else PAD
+    boxes += _idle_clusters(idle, left, frame.height, width)
+    height = max(box.rect.bottom for box in boxes) + PAD
+    return Layout(tuple(boxes), wiring.arcs(), (width, height))
 
 
-def _plans(
-    graph: Graph, cluster: int, dead: Sequence[Member], workers: Mapping[int, tuple[int, ...]]
-) -> list[_Plan]:
-    living = [member for member in graph.members if member.cluster == cluster]
-    gone = [member for member in dead if member.cluster == cluster]
-    cores = {member.core for member in (*living, *gone) if member.core is not None}
-    if graph.cores_per_cluster <= MAX_EMPTY_CORES:
-        cores |= set(range(graph.cores_per_cluster))
-    plans = [
-        _plan(
-            core,
-            [m for m in living if m.core == core],
-            [m for m in gone if m.core == core],
-            workers,
-        )
-        for core in sorted(cores)
-    ]
-    plans += [_plan(None, [member], [], workers) for member in living if member.core is None]
-    plans += [_plan(None, [], [member], workers) for member in gone if member.core is None]
-    return plans
+def _cluster(plan: ClusterPlan, index: int, frame: Frame) -> ClusterBox:
+    cells = tuple(_cell(cell, frame.cells[cell.id]) for row in plan.rows for cell in row)
+    free = {core: frame.tiles[plan.id, core] for core in plan.free}
+    return ClusterBox(plan.id, True, cells, free, frame.clusters[index])
 
 
-def _plan(
-    core: int | None,
-    living: Sequence[Member],
-    dead: Sequence[Member],
-    workers: Mapping[int, tuple[int, ...]],
-) -> _Plan:
-    helpers = tuple(pid for member in living for pid in workers.get(member.pid, ()))
-    return _Plan(core, tuple(living), tuple(dead), helpers)
-
-
-def _place_cluster(cluster: int, plans: Sequence[_Plan], x: float, y: float) -> ClusterBox:
-    is_crowded = len(plans) > _MANY_CELLS
-    columns = math.ceil(math.sqrt(len(plans) / 2)) if is_crowded else 4
-    width = _NARROW if is_crowded else _WIDE
-    cells: list[Cell] = []
-    top = y + HEAD
-    for start in range(0, len(plans), columns):
-        row = plans[start : start + columns]
-        height = max(plan.height for plan in row)
-        for column, plan in enumerate(row):
-            left = x + PAD + column * (width + GAP)
-            cells.append(_place_cell(cluster, plan, Rect(left, top, width, height)))
-        top += height + GAP
-    box = Rect(x, y, 2 * PAD + columns * (width + GAP) - GAP, top - GAP + PAD - y)
-    return ClusterBox(cluster, True, tuple(cells), box)
-
-
-def _place_cell(cluster: int, plan: _Plan, rect: Rect) -> Cell:
-    members = plan.living + plan.dead
-    own = f"{plan.core}" if plan.core is not None else f"p{members[0].slot}-{members[0].pid}"
-    boxes = [
+def _cell(plan: CellPlan, rect: Rect) -> Cell:
+    nodes = tuple(
         NodeBox(
             f"n{member.pid}{name}",
             name,
@@ -246,27 +162,24 @@ def _place_cell(cluster: int, plan: _Plan, rect: Rect) -> Cell:
             ),
         )
         for row, (name, member, is_dead) in enumerate(plan.names[:MAX_NODES_OF_CELL])
-    ]
-    return Cell(
-        f"c{cluster}-{own}",
-        cluster,
-        plan.core,
-        members,
-        plan.workers,
-        tuple(boxes),
-        max(len(plan.names) - MAX_NODES_OF_CELL, 0),
-        rect,
     )
+    return Cell(plan, nodes, rect)
 
 
-def _place_unused(clusters: Sequence[int], y: float) -> list[ClusterBox]:
-    right, down = UNUSED_WIDTH + GAP, UNUSED_HEIGHT + GAP
+def _idle_clusters(clusters: Sequence[int], x: float, y: float, width: float) -> list[ClusterBox]:
+    in_line = int((width - x - PAD + GAP) // (UNUSED_WIDTH + GAP))
     return [
         ClusterBox(
             cluster,
             False,
             (),
-            Rect(PAD + place % 6 * right, y + place // 6 * down, UNUSED_WIDTH, UNUSED_HEIGHT),
+            {},
+            Rect(
+                x + place % in_line * (UNUSED_WIDTH + GAP),
+                y + place // in_line * (UNUSED_HEIGHT + GAP),
+                UNUSED_WIDTH,
+                UNUSED_HEIGHT,
+            ),
         )
         for place, cluster in enumerate(clusters)
     ]

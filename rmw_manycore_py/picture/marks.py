@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
-from rmw_manycore_py.picture.arcs import Arc
+from rmw_manycore_py.picture.arcs import LOAD_LENGTH
 from rmw_manycore_py.picture.layout import Cell, ClusterBox, Layout
 from rmw_manycore_py.picture.texts import bytes_text, percent_text, rate_text, time_text
 from rmw_manycore_py.platform.monitor.latency import TopicLatency
@@ -22,7 +22,7 @@ RATE_LEVELS = 5
 _FULL = 0.9  # fill level of a queue or SMEM shown as nearly full
 
 
-def marks_of(look: Look, layout: Layout, arcs: tuple[Arc, ...]) -> Marks:
+def marks_of(look: Look, layout: Layout) -> Marks:
     """Return all marks of a look."""
     marks: Marks = {}
     rates_hz = look.loads.receive_thread_rates_hz()
@@ -30,15 +30,17 @@ def marks_of(look: Look, layout: Layout, arcs: tuple[Arc, ...]) -> Marks:
         marks.update(_of_cluster(look.loads, box, rates_hz.get(box.id, 0.0)))
     for cell in layout.cells:
         marks[cell.id], marks[cell.cpu_id] = _of_core(look.loads, cell)
-        for pid in cell.workers:
+        for pid in cell.plan.workers:
             share = look.loads.cpu_share(pid)
             marks[f"w{pid}"] = {"class": f"worker cpu{level(share, CPU_LEVELS)}"}
     topics = look.loads.rounded_topics
-    for arc in arcs:
-        load = topics.get(arc.topic)
-        if load is not None:
-            latency = look.latencies.get(arc.topic)
-            marks[arc.id], marks[arc.label_id] = _topic_marks(load, latency)
+    for arc in layout.arcs:
+        loads = [topics[name] for name in arc.wire.topics if name in topics]
+        if loads:
+            latencies = (look.latencies.get(name) for name in arc.wire.topics)
+            marks[arc.id], marks[arc.label_id] = _topic_marks(
+                _together(loads), next(filter(None, latencies), None)
+            )
     return marks
 
 
@@ -74,22 +76,17 @@ def _of_cluster(loads: Loads, box: ClusterBox, rate_hz: float) -> Iterator[tuple
 
 
 def _of_core(loads: Loads, cell: Cell) -> tuple[Mark, Mark]:
-    if not cell.members and not cell.has_dead:
-        return _FREE
-    cpu = sum([loads.cpu_share(member.pid) for member in cell.members])
-    percent = percent_text(cpu) if cell.members else ""
-    return _core_marks(bool(cell.members), level(cpu, CPU_LEVELS), cell.has_dead, percent)
+    living = cell.plan.living
+    cpu = sum([loads.cpu_share(member.pid) for member in living])
+    percent = percent_text(cpu) if living else ""
+    return _core_marks(level(cpu, CPU_LEVELS), bool(cell.plan.dead), percent)
 
 
 # Marks depend on few values, and most elements stay unchanged: each mark is made once.
 @lru_cache(maxsize=1024)
-def _core_marks(is_used: bool, cpu_level: int, is_dead: bool, percent: str) -> tuple[Mark, Mark]:
+def _core_marks(cpu_level: int, is_dead: bool, percent: str) -> tuple[Mark, Mark]:
     """Return the marks of a core and of its CPU usage."""
-    state = "cell" if is_used else "cell free"
-    return {"class": f"{state} cpu{cpu_level}{' dead' if is_dead else ''}"}, {"text": percent}
-
-
-_FREE = _core_marks(False, 0, False, "")
+    return {"class": f"cell cpu{cpu_level}{' dead' if is_dead else ''}"}, {"text": percent}
 
 
 @lru_cache(maxsize=8192)
@@ -101,11 +98,25 @@ def _topic_marks(load: TopicLoad, latency: TopicLatency | None) -> tuple[Mark, M
     if load.fill >= _FULL:
         words.append("full")
     curve: Mark = {"class": " ".join(words), "rate": float(f"{load.rate_hz:.2g}")}
-    return curve, {"text": topic_text(load, latency)}
+    return curve, {"text": label_text(load, latency)}
+
+
+def label_text(load: TopicLoad, latency: TopicLatency | None) -> str:
+    """Return the label of a topic's arc: of its load what has room, losses first."""
+    first, *parts = _parts(load, latency)
+    text = first
+    for part in sorted(parts, key=lambda one: not one.endswith("lost")):
+        if len(text) + len(part) + 3 <= LOAD_LENGTH:
+            text = f"{text} · {part}"
+    return text
 
 
 def topic_text(load: TopicLoad, latency: TopicLatency | None) -> str:
-    """Return the label of a topic's arc."""
+    """Return the load of a topic in words."""
+    return " · ".join(_parts(load, latency))
+
+
+def _parts(load: TopicLoad, latency: TopicLatency | None) -> list[str]:
     parts = [rate_text(load.rate_hz)]
     if load.rate_hz:
         parts.append(bytes_text(load.message_bytes))
@@ -115,7 +126,21 @@ def topic_text(load: TopicLoad, latency: TopicLatency | None) -> str:
         parts.append(f"queue {load.queued}/{load.capacity}")
     if load.lost:
         parts.append(f"{load.lost} lost")
-    return " · ".join(parts)
+    return parts
+
+
+def _together(loads: Sequence[TopicLoad]) -> TopicLoad:
+    """Return the load of topics that are drawn as one."""
+    if len(loads) == 1:
+        return loads[0]
+    fullest = max(loads, key=lambda load: load.fill)
+    return fullest._replace(
+        rate_hz=sum(load.rate_hz for load in loads),
+        bytes_per_s=sum(load.bytes_per_s for load in loads),
+        lost=sum(load.lost for load in loads),
+        superseded=sum(load.superseded for load in loads),
+        losses_per_s=sum(load.losses_per_s for load in loads),
+    )
 
 
 def _rate_level(rate_hz: float) -> int:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import time
 from typing import Any
 
+from rmw_manycore_py.picture.arcs import Arc
 from rmw_manycore_py.picture.chip import Chip
 from rmw_manycore_py.picture.marks import Marks, changed
 from rmw_manycore_py.platform.monitor.watch import Look
@@ -58,10 +59,11 @@ class PageState:
         marks = self._viewer.marks
         if chip is not self._chip:
             news["svg"] = chip.svg(marks, standalone=False)
-            news["arcs"] = {arc.id: [curve.numbers() for curve in arc.curves] for arc in chip.arcs}
+            arcs = chip.layout.arcs
+            news["arcs"] = {arc.id: _arc_row(arc) for arc in arcs}
             news["nodes"] = [node.name for node in chip.layout.nodes]
             news["topics"] = list(self._viewer.look.graph.topics) if self._viewer.look else []
-            news["rates"] = {arc.id: marks.get(arc.id, {}).get("rate", 0) for arc in chip.arcs}
+            news["rates"] = {arc.id: marks.get(arc.id, {}).get("rate", 0) for arc in arcs}
             self._chip = chip
         else:
             news["marks"] = changed(self._marks, marks)
@@ -83,6 +85,11 @@ class PageState:
         series["all"] = not self._has_selected
         self._has_selected = True
         return {"kind": kind, "name": name, "found": found, "charts": series}
+
+
+def _arc_row(arc: Arc) -> Row:
+    lines = [[round(value, 1) for point in line for value in point] for line in arc.lines]
+    return {"lines": lines, "topics": arc.wire.topics, "nodes": arc.wire.nodes}
 
 
 def _trace_row(look: Look) -> Row | None:

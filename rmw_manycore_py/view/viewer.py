@@ -63,16 +63,17 @@ class Viewer:
         if look is None:
             self._note_end()
         else:
-            self._show(look)
+            chip = self.chip
+            if chip is None or self.look is None or not chip.fits(look, self.look):
+                chip = await asyncio.to_thread(Chip.of, look)
+            self._show(look, chip)
 
-    def _show(self, look: Look) -> None:
+    def _show(self, look: Look, chip: Chip) -> None:
         if not self.is_there:
             self._note((Event("platform", f"platform {self.platform} has started"),))
         self.is_there, self.state = True, f"platform {self.platform}"
-        if self.chip is None or self.look is None or not self.chip.fits(look, self.look):
-            self.chip = Chip.of(look)
-        self.look = look
-        self.marks = self.chip.marks(look)
+        self.look, self.chip = look, chip
+        self.marks = chip.marks(look)
         self.history.append(look, time.time())
         self._note(look.happened)
 

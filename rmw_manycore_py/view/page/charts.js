@@ -87,7 +87,7 @@ export class Charts {
       values: (_, values) => values.map((value) => COMPACT.format(value)),
     };
     const options = {
-      width: 350,
+      width: Math.max(this.place.clientWidth, 240),
       height: 110,
       legend: { show: names.length > 1, live: false },
       cursor: { y: false },

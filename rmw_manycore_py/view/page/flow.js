@@ -2,9 +2,9 @@
 // Messages that move along the topics. Drawn on a canvas above the picture, so that the picture
 // itself is not painted anew; a dot stands for a message up to MAX_DOTS_HZ per second.
 
-const MAX_DOTS_HZ = 8;
-const MAX_CURVES = 150;
-const TRAVEL_S = 1.2;
+const MAX_DOTS_HZ = 3;
+const MAX_LINES = 150;
+const SPEED = 160; // units of the picture per second
 const FRAME_MS = 50;
 
 export class Flow {
@@ -13,6 +13,7 @@ export class Flow {
     this.toggle = toggle;
     this.arcs = new Map();
     this.rates = new Map();
+    this.only = null;
     this.viewBox = null;
     this.timer = null;
     toggle.checked = !matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -23,7 +24,7 @@ export class Flow {
 
   replace(svg, arcs, rates) {
     this.viewBox = svg.viewBox.baseVal;
-    this.arcs = new Map(Object.entries(arcs));
+    this.arcs = new Map(Object.entries(arcs).map(([id, arc]) => [id, arc.lines.map(measured)]));
     this.rates = new Map(Object.entries(rates));
     this.resize();
     this.run();
@@ -35,6 +36,12 @@ export class Flow {
         this.rates.set(id, mark.rate);
       }
     }
+    this.run();
+  }
+
+  // ids: of the arcs along which messages are shown; null for all
+  limit(ids) {
+    this.only = ids;
     this.run();
   }
 
@@ -59,16 +66,17 @@ export class Flow {
     }
   }
 
-  // The busiest topics' curves, each with its rate.
+  // The busiest topics' lines, each with its rate.
   moving() {
-    const busiest = [...this.rates].filter(([, rate]) => rate > 0).sort((a, b) => b[1] - a[1]);
+    const shown = [...this.rates].filter(([id, rate]) => rate > 0 && (this.only?.has(id) ?? true));
+    const busiest = shown.sort((a, b) => b[1] - a[1]);
     const found = [];
     for (const [id, rate] of busiest) {
-      for (const curve of this.arcs.get(id) ?? []) {
-        if (found.length === MAX_CURVES) {
+      for (const line of this.arcs.get(id) ?? []) {
+        if (found.length === MAX_LINES) {
           return found;
         }
-        found.push([curve, Math.min(rate, MAX_DOTS_HZ)]);
+        found.push([line, Math.min(rate, MAX_DOTS_HZ)]);
       }
     }
     return found;
@@ -84,21 +92,33 @@ export class Flow {
     const scale = canvas.width / viewBox.width;
     context.fillStyle = getComputedStyle(document.body).getPropertyValue("--accent");
     const now = performance.now() / 1000;
-    for (const [curve, rate] of this.moving()) {
-      const gap = 1 / (rate * TRAVEL_S);
-      for (let at = (now / TRAVEL_S) % gap; at < 1; at += gap) {
-        const [x, y] = pointOn(curve, at);
+    for (const [line, rate] of this.moving()) {
+      const gap = SPEED / rate;
+      for (let at = (now * SPEED) % gap; at < line.length; at += gap) {
+        const [x, y] = pointOn(line, at);
         context.beginPath();
-        context.arc(x * scale, y * scale, 3, 0, 2 * Math.PI);
+        context.arc(x * scale, y * scale, 2.5, 0, 2 * Math.PI);
         context.fill();
       }
     }
   }
 }
 
-function pointOn([x0, y0, x1, y1, x2, y2], at) {
-  const a = (1 - at) * (1 - at);
-  const b = 2 * at * (1 - at);
-  const c = at * at;
-  return [a * x0 + b * x1 + c * x2, a * y0 + b * y1 + c * y2];
+// numbers: x and y of each point in turn
+function measured(numbers) {
+  const points = [];
+  let length = 0;
+  for (let n = 0; n < numbers.length; n += 2) {
+    const [x, y] = [numbers[n], numbers[n + 1]];
+    length += n === 0 ? 0 : Math.abs(x - numbers[n - 2]) + Math.abs(y - numbers[n - 1]);
+    points.push({ x, y, at: length });
+  }
+  return { points, length };
+}
+
+function pointOn({ points }, at) {
+  const next = points.findIndex((point) => point.at >= at);
+  const [from, to] = [points[Math.max(next - 1, 0)], points[next]];
+  const share = to.at > from.at ? (at - from.at) / (to.at - from.at) : 0;
+  return [from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)];
 }

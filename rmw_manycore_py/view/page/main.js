@@ -33,7 +33,7 @@ function select(choice) {
     return;
   }
   selected = choice;
-  picture.select(choice);
+  flow.limit(picture.select(choice));
   details.open(choice);
   if (live !== null && live.readyState === WebSocket.OPEN) {
     live.send(JSON.stringify({ select: choice }));
@@ -44,9 +44,10 @@ function show(news) {
   const began = performance.now();
   showState(news.state, news.there);
   if (news.svg !== undefined) {
-    picture.replace(news.svg);
-    picture.select(selected);
+    picture.replace(news.svg, news.arcs);
+    fitPaper();
     flow.replace(picture.svg, news.arcs, news.rates);
+    flow.limit(picture.select(selected));
     finder.replace(news.nodes, news.topics);
   }
   if (news.marks !== undefined) {
@@ -67,6 +68,15 @@ function show(news) {
     document.body.dataset.frameMs = (performance.now() - began).toFixed(1);
     document.body.dataset.frames = Number(document.body.dataset.frames ?? 0) + 1;
   }));
+}
+
+// As wide as the column, unless names become too small to read, or larger than the rest.
+function fitPaper() {
+  const width = picture.svg?.viewBox.baseVal.width ?? 0;
+  const zoom = document.getElementById("zoom").value / 100;
+  const paper = document.getElementById("paper");
+  paper.style.width = `calc(clamp(${0.8 * width}px, 100%, ${1.5 * width}px) * ${zoom})`;
+  flow.resize();
 }
 
 function showState(text, isThere) {
@@ -111,8 +121,5 @@ document.addEventListener("keydown", (event) => {
     document.getElementById("find").focus();
   }
 });
-document.getElementById("zoom").addEventListener("input", (event) => {
-  document.getElementById("paper").style.width = `${event.target.value}%`;
-  flow.resize();
-});
+document.getElementById("zoom").addEventListener("input", fitPaper);
 connect();

@@ -6,7 +6,8 @@ export class Picture {
     this.place = place;
     this.svg = null;
     this.elements = new Map();
-    this.selected = null;
+    this.arcs = {};
+    this.marked = []; // elements and the class that the choice gives them
     place.addEventListener("click", (event) => onSelect(choiceOf(event.target)));
     place.addEventListener("keydown", (event) => {
       if (event.key === "Enter" || event.key === " ") {
@@ -16,11 +17,14 @@ export class Picture {
     });
   }
 
-  replace(text) {
+  // arcs: {id: {lines, topics, nodes}}
+  replace(text, arcs) {
     const focused = document.activeElement?.id;
     const parsed = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
     this.place.replaceChildren(parsed);
     this.svg = parsed;
+    this.arcs = arcs;
+    this.marked = [];
     this.elements = new Map([...parsed.querySelectorAll("[id]")].map((one) => [one.id, one]));
     if (focused && this.elements.has(focused)) {
       this.elements.get(focused).focus({ preventScroll: true });
@@ -43,16 +47,43 @@ export class Picture {
         element.setAttribute("width", mark.width);
       }
     }
-    this.selected?.classList.add("selected");
+    this.marked.forEach(([element, name]) => element.classList.add(name));
   }
 
+  // What is joined to the choice stays, the rest steps back. Returns the ids of the arcs that stay;
+  // null for all.
   select(choice) {
-    this.selected?.classList.remove("selected");
-    this.selected = null;
-    if (choice !== null && this.svg !== null) {
-      const [[kind, name]] = Object.entries(choice);
-      this.selected = this.svg.querySelector(`[data-${kind}="${CSS.escape(name)}"]`);
-      this.selected?.classList.add("selected");
+    this.marked.forEach(([element, name]) => element.classList.remove(name));
+    this.marked = [];
+    if (this.svg === null || choice === null) {
+      return null;
+    }
+    const [[kind, name]] = Object.entries(choice);
+    const joined = Object.entries(this.arcs).filter(([, arc]) => arc[`${kind}s`]?.includes(name));
+    const nodes = new Set(joined.flatMap(([, arc]) => arc.nodes));
+    if (kind === "node") {
+      nodes.add(name);
+    }
+    for (const [id] of joined) {
+      this.markAs("related", this.elements.get(id));
+      this.markAs("related", this.svg.querySelector(`[data-of="${CSS.escape(id)}"]`));
+    }
+    for (const node of this.svg.querySelectorAll("[data-node]")) {
+      this.markAs("related", nodes.has(node.dataset.node) ? node : null);
+      this.markAs("selected", kind === "node" && node.dataset.node === name ? node : null);
+    }
+    this.markAs("selected", kind === "topic" && joined.length > 0 ? this.elements.get(joined[0][0]) : null);
+    if (joined.length === 0 && kind === "topic") {
+      return null; // one that is not drawn
+    }
+    this.markAs("choosing", this.svg);
+    return new Set(joined.map(([id]) => id));
+  }
+
+  markAs(name, element) {
+    if (element) {
+      element.classList.add(name);
+      this.marked.push([element, name]);
     }
   }
 }

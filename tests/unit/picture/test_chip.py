@@ -1,64 +1,32 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The picture: nothing overlaps, arcs join their nodes, names are escaped."""
+"""The picture: nothing overlaps, names are escaped, numbers are short."""
 
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
 from itertools import combinations
-from typing import Any
 
 import pytest
 
-from rmw_manycore_py.native._transport import Qos
-from rmw_manycore_py.picture.arcs import MAX_PAIRS, arcs_of
 from rmw_manycore_py.picture.drawing import draw
 from rmw_manycore_py.picture.geometry import Rect
-from rmw_manycore_py.picture.layout import MAX_NODES_OF_CELL, Layout, lay_out
+from rmw_manycore_py.picture.layout import Layout, lay_out
 from rmw_manycore_py.picture.marks import changed, level
+from rmw_manycore_py.picture.plan import MAX_NODES_OF_CELL
 from rmw_manycore_py.picture.texts import bytes_text, fitted, rate_text, time_text
-from rmw_manycore_py.platform.monitor.graph import Endpoint, Graph, Member
-from rmw_manycore_py.ros.qos import policies_of
+from rmw_manycore_py.platform.monitor.graph import Member
+from support.samples.mappings import apart, graph, inside, member
 
 pytestmark = pytest.mark.unit
-
-QOS = policies_of(Qos())
-
-
-def member(slot: int, cluster: int, core: int | None, *nodes: str) -> Member:
-    return Member(slot, 100 + slot, cluster, core, None, f"program {slot}", nodes)
-
-
-def graph(members: list[Member], ends: list[tuple[Any, str, int]] | None = None) -> Graph:
-    """Return a graph of Coolidge's size; ends are kind, topic, and index of the member."""
-    endpoints = tuple(
-        Endpoint(n, kind, "topic", topic, "T", members[i].nodes[0], members[i].slot, QOS)
-        for n, (kind, topic, i) in enumerate(ends or [])
-    )
-    return Graph("p", 5, 16, 1 << 20, tuple(members), endpoints)
-
-
-def inside(inner: Rect, outer: Rect) -> bool:
-    return (
-        inner.x >= outer.x
-        and inner.y >= outer.y
-        and inner.x + inner.width <= outer.x + outer.width
-        and inner.y + inner.height <= outer.y + outer.height
-    )
-
-
-def apart(one: Rect, other: Rect) -> bool:
-    return (
-        one.x + one.width <= other.x
-        or other.x + other.width <= one.x
-        or one.y + one.height <= other.y
-        or other.y + other.height <= one.y
-    )
 
 
 def check(layout: Layout) -> None:
     width, height = layout.size
     for cluster in layout.clusters:
         assert inside(cluster.rect, Rect(0, 0, width, height))
+        for rect in cluster.free.values():
+            assert inside(rect, cluster.rect)
+            assert all(apart(rect, cell.rect) for cell in cluster.cells)
         for cell in cluster.cells:
             assert inside(cell.rect, cluster.rect)
             assert all(inside(node.rect, cell.rect) for node in cell.nodes)
@@ -84,51 +52,23 @@ def test_every_core_and_node_has_its_place() -> None:
         "/dead": True,
     }
     assert [cluster.is_used for cluster in layout.clusters] == [True, True, False, False, False]
-    assert sum(cell.core is not None for cell in layout.cells) == 2 * 16
+    used = sum(cell.plan.core is not None for cell in layout.cells)
+    assert used + sum(len(cluster.free) for cluster in layout.clusters) == 2 * 16
     (cell,) = [cell for cell in lay_out(graph(FULL), []).cells if cell.nodes]
     assert (len(cell.nodes), cell.hidden) == (MAX_NODES_OF_CELL, 40 - MAX_NODES_OF_CELL)
 
 
-def test_arcs_lead_from_publishers_to_subscriptions() -> None:
-    shown = graph(
-        FEW,
-        [
-            ("publisher", "/t", 0),
-            ("subscription", "/t", 1),
-            ("publisher", "/rosout", 0),
-            ("subscription", "/rosout", 1),
-            ("publisher", "/unheard", 0),
-        ],
-    )
-    layout = lay_out(shown, [])
-    (arc,) = arcs_of(shown, layout)
-    places = {node.name: node.rect for node in layout.nodes}
-    (curve,) = arc.curves
-    for point, rect in ((curve.start, places["/talker"]), (curve.end, places["/a"])):
-        assert rect.x <= point[0] <= rect.x + rect.width
-        assert rect.y <= point[1] <= rect.y + rect.height
-    assert arc.topic == "/t"
-
-
 def test_workers_are_named() -> None:
-    drawn = draw("p", lay_out(graph(FEW), [1, 2], workers={100: (70, 71)}), (), {})
+    drawn = draw("p", lay_out(graph(FEW), [1, 2], workers={100: (70, 71)}), {})
     titles = [element.text for element in ElementTree.fromstring(drawn).iter() if element.text]
     assert {"NDT worker, pid 70", "NDT worker, pid 71"} <= set(titles)
-
-
-def test_many_pairs_meet_in_a_point() -> None:
-    ends = [("publisher", "/t", i) for i in range(3)]
-    ends += [("subscription", "/t", i) for i in range(3, 3 + MAX_PAIRS)]
-    shown = graph(CROWD[:20], ends)
-    (arc,) = arcs_of(shown, lay_out(shown, []))
-    assert len(arc.curves) == 3 + MAX_PAIRS
 
 
 def test_names_cannot_break_out() -> None:
     evil = '/a"><script>alert(1)</script>\x01'
     shown = graph([member(0, 1, 1, evil)], [("publisher", evil, 0), ("subscription", evil, 0)])
     layout = lay_out(shown, [1])
-    root = ElementTree.fromstring(draw(evil, layout, arcs_of(shown, layout), {}))
+    root = ElementTree.fromstring(draw(evil, layout, {}))
     assert not [element for element in root.iter() if "script" in element.tag]
     assert any("<script>" in (element.get("data-node") or "") for element in root.iter())
 
