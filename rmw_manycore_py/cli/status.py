@@ -141,7 +141,7 @@ def _show(state: PlatformState | Unreadable) -> None:
 
 def _show_clusters(clusters: list[_transport.ClusterInfo]) -> None:
     columns = ("#cluster", "receive thread", "#SMEM", "#used", "#messages")
-    table = new_table(*columns)
+    table = new_table(*columns, expendable=("messages", "receive thread"))
     for cluster in clusters:
         thread = f"pid {cluster.receive_thread_pid}" if cluster.alive else "not running"
         sizes = (size_text(cluster.smem_bytes), size_text(cluster.used_bytes))

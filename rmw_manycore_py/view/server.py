@@ -6,6 +6,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import re
 import tempfile
 from collections.abc import AsyncIterator, Awaitable
 from pathlib import Path
@@ -17,15 +18,16 @@ from aiohttp.http_exceptions import HttpProcessingError
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.picture.drawing import stylesheet
 from rmw_manycore_py.view.access import Access
+from rmw_manycore_py.view.commands import output_of, samples_of
 from rmw_manycore_py.view.listener import Listener
 from rmw_manycore_py.view.page_state import PageState
-from rmw_manycore_py.view.parameters import parameters_of
 from rmw_manycore_py.view.tracing import Tracing
 from rmw_manycore_py.view.viewer import Viewer
 
 _PAGE = Path(__file__).parent / "page"
 _MAX_REQUEST_BYTES = 4096
 _SHUTDOWN_S = 1.0
+_PLACE = re.compile(r"\d{1,4}(:\d{1,4})?", re.ASCII)
 
 
 def serve(platform: str, listener: Listener, period_s: float) -> None:
@@ -59,7 +61,10 @@ def application(platform: str, period_s: float, access: Access, kept: Path) -> w
             web.post(f"{root}/trace/start", pages.start_trace),
             web.post(f"{root}/trace/stop", pages.stop_trace),
             web.get(f"{root}/trace/{{name}}", pages.trace_file),
+            web.get(f"{root}/samples", pages.samples),
             web.post(f"{root}/parameters", pages.parameters),
+            web.post(f"{root}/restart", pages.restart),
+            web.post(f"{root}/move", pages.move),
             web.static(f"{root}/page", _PAGE),
         ]
     )
@@ -158,19 +163,68 @@ class Pages:
         said = {"Content-Disposition": f'attachment; filename="{path.name}"'}
         return web.FileResponse(path, headers=said)
 
-    async def parameters(self, request: web.Request) -> web.StreamResponse:
-        """Query a node's parameters, unless the platform has ended: that would restart it."""
+    async def samples(self, request: web.Request) -> web.StreamResponse:
+        """Send messages of a topic until the page closes the WebSocket."""
+        topic, look = request.query.get("topic", ""), self._viewer.look
         if (absence := self._absence()) is not None:
             return absence
-        node = request.query.get("node", "")
-        look = self._viewer.look
-        known = look is not None and any(node in member.nodes for member in look.graph.members)
+        if look is None or topic not in look.graph.topics:
+            return _problem(404, f"no topic '{topic}'")
+        live = web.WebSocketResponse(heartbeat=20, max_msg_size=_MAX_REQUEST_BYTES)
+        await live.prepare(request)
+        self._sockets.add(live)
+        sending = asyncio.create_task(_send_samples(live, self._viewer.platform, topic))
+        try:
+            async for _ in live:
+                pass
+        finally:
+            sending.cancel()
+            self._sockets.discard(live)
+            with contextlib.suppress(asyncio.CancelledError):
+                await sending
+        return live
+
+    async def parameters(self, request: web.Request) -> web.StreamResponse:
+        """Query a node's parameters."""
+        return await self._command(request, "param", "dump")
+
+    async def restart(self, request: web.Request) -> web.StreamResponse:
+        """Restart a node of a run."""
+        return await self._command(request, "restart")
+
+    async def move(self, request: web.Request) -> web.StreamResponse:
+        """Restart a node of a run on another core."""
+        place = request.query.get("place", "")
+        if not _PLACE.fullmatch(place):
+            return _problem(400, f"expected a cluster such as 2, or a core as 2:3, found '{place}'")
+        return await self._command(request, "move", place)
+
+    async def _command(self, request: web.Request, *words: str) -> web.StreamResponse:
+        """Run a command about a node, unless the platform has ended: it would start anew."""
+        if (absence := self._absence()) is not None:
+            return absence
+        node, look = request.query.get("node", ""), self._viewer.look
+        known = look is not None and any(
+            node in member.nodes for member in (*look.graph.members, *look.dead)
+        )
         if not known:
             return _problem(404, f"no node '{node}'")
-        return await _answered(parameters_of(self._viewer.platform, node))
+        verb, *rest = words
+        given = [*rest, node] if verb == "param" else [node, *rest]
+        return await _answered(output_of(verb, *given, "--platform", self._viewer.platform))
 
     def _absence(self) -> web.StreamResponse | None:
         return None if self._viewer.is_there else _problem(409, self._viewer.state)
+
+
+async def _send_samples(live: web.WebSocketResponse, platform: str, topic: str) -> None:
+    with contextlib.suppress(ConnectionError):
+        try:
+            async with contextlib.aclosing(samples_of(platform, topic)) as samples:
+                async for sample in samples:
+                    await live.send_str(sample)
+        except ManycoreError as error:
+            await live.send_json({"error": str(error)})
 
 
 async def _answered(work: Awaitable[Any]) -> web.StreamResponse:

@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
+import re
 import signal
 
 import pytest
 
+from rmw_manycore_py.picture.drawing import draw
+from rmw_manycore_py.picture.layout import lay_out
 from rmw_manycore_py.trace.files import load
 from support import IS_MANYCORE, wait_until
 from support.peers.programs import forked_example
+from support.processes.commands import manycore_command
+from support.samples.mappings import mapping
 
 pytestmark = [
     pytest.mark.integration,
@@ -78,6 +83,91 @@ def test_a_platform_is_seen_from_start_to_end(view, browser, start, platform) ->
     listener.kill()
 
 
+def test_messages_are_shown_and_a_number_plotted(talking, view, browser) -> None:
+    browser.open(view[1])
+    browser.click("[data-topic='/chatter']")
+    browser.find("#picture svg.choosing .topic.selected.related")
+    browser.click("#samples")
+    browser.wait_for_text("#samples-fields [data-path='data']", "Hello World")
+    browser.click("#samples")
+    browser.wait_for_text("#samples", "Show messages")
+    assert browser.complaints() == []
+
+
+def test_the_chip_is_seen_at_any_width(talking, view, browser) -> None:
+    from support.processes.browser import WINDOW
+
+    browser.open(view[1])
+    browser.find("[data-node='/talker']")
+    for width in (400, 800, 1200):
+        browser.driver.set_window_size(width, 800)
+        script = "return [stage.clientHeight, document.documentElement.scrollWidth, innerWidth]"
+        height, needed, given = browser.driver.execute_script(script)
+        assert height >= 200, width
+        assert needed <= given, width
+    browser.driver.set_window_size(*WINDOW)
+
+
+OVERLAPS = """
+const texts = [...document.querySelectorAll("text")].filter((one) => one.textContent);
+const boxes = texts.map((one) => one.getBBox());
+const meet = (a, b) => a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height
+  && b.y < a.y + a.height;
+const isOfOneLabel = (one, other) => one.parentNode === other.parentNode;
+return texts.flatMap((one, i) => texts.slice(i + 1).filter((other, j) =>
+  meet(boxes[i], boxes[i + 1 + j]) && !isOfOneLabel(one, other)
+).map((other) => [one.textContent, other.textContent]));
+"""
+
+
+def test_no_text_of_a_crowded_picture_covers_another_one(browser, tmp_path) -> None:
+    """With the fonts of a browser, of which the layout knows no more than a mean width."""
+    layout = lay_out(mapping(6, 40), [])
+    marks = {arc.label_id: {"text": "1.2 kHz · 123456 lost · 9.9 GiB"} for arc in layout.arcs}
+    marks |= {cell.cpu_id: {"text": "100 %"} for cell in layout.cells}
+    file = tmp_path / "chip.html"
+    file.write_text(f"<body>{draw('p', layout, marks)}</body>")
+    browser.open(f"file://{file}")
+    assert len(browser.all("text")) > 100
+    assert browser.driver.execute_script(OVERLAPS) == []
+
+
+def test_a_node_of_a_run_is_restarted_and_moved(view, browser, start, tmp_path) -> None:
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text(
+        "nodes:\n  talker: {cluster: 1, module: rmw_manycore_py.examples.talker, core: 1}\n"
+    )
+    run = start(manycore_command("run", mapfile))
+    browser.open(view[1])
+    browser.click("[data-node='/talker']")
+    browser.wait_for_text("#details-facts", "cluster 1, core 1")
+    first = pid_on(browser)
+    ask(browser, "#restart", "talker started")
+    browser.until(lambda: pid_on(browser) not in (first, None), "another process")
+    browser.driver.execute_script("place.value = '2:3'")
+    ask(browser, "#move", "talker started")
+    browser.wait_for_text("#details-facts", "cluster 2, core 3")
+    browser.driver.execute_script("place.value = '99:-1'")
+    ask(browser, "#move", "expected a cluster such as 2")
+    assert run.stop() == 0
+
+
+def ask(browser, selector: str, answer: str) -> None:
+    """Click a button that asks for confirmation, confirm, and await the answer."""
+    from selenium.webdriver.support.expected_conditions import alert_is_present
+
+    browser.find(f"{selector}:enabled")
+    click = f"setTimeout(() => document.querySelector('{selector}').click())"
+    browser.driver.execute_script(click)
+    browser.until(lambda: alert_is_present()(browser.driver), "the question").accept()
+    browser.wait_for_text("#control-text", answer)
+
+
+def pid_on(browser) -> str | None:
+    found = re.search(r"pid \d+", browser.text("#details-facts"))
+    return found.group() if found else None
+
+
 def test_two_pages_see_the_end_of_a_platform(talking, view, browser) -> None:
     viewer, link = view
     browser.open(link)
@@ -107,7 +197,7 @@ def test_the_keyboard_goes_everywhere(talking, view, browser, start) -> None:
     assert browser.focused_text() == "topic /chatter"
     browser.press(None, "Enter")
     browser.wait_for_text("#details-title", "/chatter")
-    browser.wait_for_text("#endpoints th[scope='col']", "kind")
+    browser.wait_for_text("#endpoints li", "reliable")
     browser.click("#details-close")
     browser.until(lambda: browser.focused_text() == "topic /chatter", "the way back")
     assert browser.complaints() == []

@@ -50,7 +50,8 @@ def command(
     """Show the chip in the browser.
 
     Clusters, cores, nodes, and the topics between them. The platform may start and end
-    meanwhile. Viewing does not join it and wakes no node.
+    meanwhile. Viewing does not join it and wakes no node; messages and parameters that the page
+    is asked for come from processes that do.
     """
     if once != (output is not None):
         raise click.UsageError("--once and -o FILE require each other")

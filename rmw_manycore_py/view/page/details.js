@@ -2,14 +2,12 @@
 // The node or topic that was clicked.
 
 import { Charts } from "./charts.js";
+import { Control } from "./control.js";
 import { post } from "./requests.js";
+import { Samples } from "./samples.js";
 
-const FIGURES = ["rate", "size", "copies", "held", "queue", "lost", "deadlines_missed", "qos"];
-const COLUMNS = {
-  node: ["kind", "topic", "type", ...FIGURES],
-  topic: ["kind", "node", ...FIGURES],
-};
-const HEADS = { deadlines_missed: "deadlines missed", qos: "QoS" };
+const FIGURES = ["size", "copies", "held", "queue", "lost", "superseded", "deadlines_missed"];
+const WORDS = { deadlines_missed: "deadlines missed" };
 
 export class Details {
   // onLost: called with what was shown, when the element that had opened it is gone.
@@ -19,13 +17,15 @@ export class Details {
     this.section = document.getElementById("details");
     this.title = document.getElementById("details-title");
     this.facts = document.getElementById("details-facts");
-    this.table = document.getElementById("endpoints");
+    this.endpoints = document.getElementById("endpoints");
     this.parameters = document.getElementById("details-parameters");
     this.parametersText = document.getElementById("parameters-text");
     this.charts = new Charts(
       document.getElementById("details-charts"),
       ["messages/s", "bytes/s", "queue %", "CPU %"].map((own) => [own, (name) => name === own]),
     );
+    this.control = new Control();
+    this.samples = new Samples();
     this.choice = null;
     document.getElementById("details-close").addEventListener("click", onClose);
     document.getElementById("parameters").addEventListener("click", () => this.ask());
@@ -38,6 +38,8 @@ export class Details {
     this.choice = choice;
     this.section.hidden = choice === null;
     this.charts.forget();
+    this.control.open(choice?.node ?? null);
+    this.samples.open(choice?.topic ?? null);
     if (choice === null) {
       if (wasInside) {
         this.giveBack(previous);
@@ -48,7 +50,7 @@ export class Details {
     const [[kind, name]] = Object.entries(choice);
     this.title.textContent = name;
     this.facts.textContent = "";
-    this.table.replaceChildren();
+    this.endpoints.replaceChildren();
     this.parameters.hidden = kind !== "node";
     this.parametersText.textContent = "";
     this.title.focus({ preventScroll: true });
@@ -74,14 +76,8 @@ export class Details {
     }
     this.facts.textContent = kind === "node" ? nodeFacts(found) : topicFacts(found);
     this.facts.classList.toggle("alarm", found.dead === true);
-    this.showEndpoints(COLUMNS[kind], found.endpoints);
+    this.endpoints.replaceChildren(...found.endpoints.map((one) => item(kind, one)));
     this.charts.add(charts);
-  }
-
-  showEndpoints(columns, rows) {
-    const used = columns.filter((column) => rows.some((row) => row[column]));
-    const head = line("th", used.map((column) => HEADS[column] ?? column));
-    this.table.replaceChildren(head, ...rows.map((row) => line("td", used.map((one) => row[one]))));
   }
 
   async ask() {
@@ -124,15 +120,25 @@ function topicFacts(topic) {
   return facts.join("\n");
 }
 
-function line(kind, texts) {
-  const row = document.createElement("tr");
-  row.append(...texts.map((text) => {
-    const cell = document.createElement(kind);
-    cell.textContent = text;
-    if (kind === "th") {
-      cell.scope = "col";
-    }
-    return cell;
+// An endpoint: what it joins, its figures, none of which is broken, and its QoS.
+function item(kind, endpoint) {
+  const found = document.createElement("li");
+  const name = text("b", kind === "node" ? endpoint.topic : endpoint.node);
+  const figures = document.createElement("div");
+  const given = FIGURES.filter((one) => endpoint[one]);
+  figures.append(text("span", endpoint.rate), ...given.map((one) => {
+    const figure = text("span", `${WORDS[one] ?? one} ${endpoint[one].toLocaleString("en")}`);
+    figure.classList.toggle("alarm", one === "lost" || one === "deadlines_missed");
+    return figure;
   }));
-  return row;
+  figures.className = "figures";
+  const quiet = kind === "node" ? `${endpoint.type}, ${endpoint.qos}` : endpoint.qos;
+  found.append(`${endpoint.kind} `, name, figures, text("small", quiet));
+  return found;
+}
+
+function text(tag, content) {
+  const found = document.createElement(tag);
+  found.textContent = content;
+  return found;
 }

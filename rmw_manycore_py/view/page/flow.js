@@ -90,15 +90,18 @@ export class Flow {
       return;
     }
     const scale = canvas.width / viewBox.width;
-    context.fillStyle = getComputedStyle(document.body).getPropertyValue("--accent");
+    const style = getComputedStyle(document.body);
+    context.fillStyle = style.getPropertyValue("--accent");
+    context.strokeStyle = style.getPropertyValue("--back"); // they also show on a wide line
     const now = performance.now() / 1000;
     for (const [line, rate] of this.moving()) {
       const gap = SPEED / rate;
       for (let at = (now * SPEED) % gap; at < line.length; at += gap) {
         const [x, y] = pointOn(line, at);
         context.beginPath();
-        context.arc(x * scale, y * scale, 2.5, 0, 2 * Math.PI);
+        context.arc(x * scale, y * scale, 3, 0, 2 * Math.PI);
         context.fill();
+        context.stroke();
       }
     }
   }
