@@ -6,10 +6,10 @@ from __future__ import annotations
 from pathlib import Path
 from types import ModuleType
 
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, shorten, what_is_wrong
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, shorten
 from rmw_manycore_py.ndt.files.pcd_file import read_pcd
 from rmw_manycore_py.ndt.files.ply_file import read_ply
-from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
+from rmw_manycore_py.ndt.files.unreadable import UNREADABLE, why_unreadable
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.precision import narrowed
 
@@ -20,7 +20,7 @@ def read_cloud(path: Path) -> Points:
     try:
         return narrowed(read(path))
     except UNREADABLE as error:
-        raise map_error(path, what_is_wrong(error)) from error
+        raise map_error(path, why_unreadable(error)) from error
 
 
 def suffix_of(path: Path) -> str:

@@ -51,7 +51,10 @@ def read_pcd(path: Path) -> Points:
 def _ascii(file: IO[bytes], header: PcdHeader, axes: list[int]) -> list[Column]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of no data at all
-        table = np.loadtxt(file, comments=None, max_rows=header.points, ndmin=2)
+        try:
+            table = np.loadtxt(file, comments=None, max_rows=header.points, ndmin=2)
+        except ValueError as error:
+            raise ValueError("expected a line of numbers for each of its points") from error
     if table.shape[0] < header.points:
         raise ValueError(f"its {header.points} points need as many lines, found {table.shape[0]}")
     if table.shape[1] != header.point_numbers:

@@ -143,7 +143,7 @@ def _ascii(file: IO[bytes], header: _Header, axes: list[int]) -> list[Column]:
         try:
             found = np.fromstring(file.read().decode("ascii"), sep=" ")
         except DeprecationWarning as error:
-            raise ValueError(f"it is broken: {error}") from error
+            raise ValueError("it is broken: a word among its points is no number") from error
     at = 0
     for element in header.elements[:-1]:
         at = _after(element, found, at)
@@ -193,7 +193,8 @@ def _skip(file: IO[bytes], element: _Element, order: str) -> None:
             length = 1
             if len(kinds) > 1:
                 kind = np.dtype(f"{order}{kinds[0]}")
-                length = _length(np.frombuffer(file.read(kind.itemsize), kind)[0])
+                data = read_data(file, element.count, kind.itemsize)
+                length = _length(np.frombuffer(data, kind)[0])
             file.seek(size * length, os.SEEK_CUR)
 
 

@@ -10,11 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from rmw_manycore_py.errors import what_is_wrong
 from rmw_manycore_py.ndt.files.cloud_file import load_open3d, map_error, read_cloud, suffix_of
 from rmw_manycore_py.ndt.files.pcd_file import write_pcd
 from rmw_manycore_py.ndt.files.ply_file import write_ply
-from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
+from rmw_manycore_py.ndt.files.unreadable import UNREADABLE, why_unreadable
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.precision import needs_doubles
 from rmw_manycore_py.ndt.recordings.recording import load_recording
@@ -40,7 +39,8 @@ def read_points(path: Path, leaf_m: float = 0.0) -> Points:
     try:
         return _thinned(points, leaf_m) if leaf_m > 0.0 else points
     except RuntimeError as error:
-        raise map_error(path, f"it cannot be downsampled to {leaf_m:g} m: {error}") from error
+        small = "such voxels are too small for its extent"
+        raise map_error(path, f"it cannot be downsampled to {leaf_m:g} m: {small}") from error
 
 
 def write_points(path: Path, points: Points) -> None:
@@ -63,7 +63,7 @@ def _read_npz(path: Path) -> Points:
     try:
         return recording.accumulated(range(len(recording)))
     except UNREADABLE as error:
-        raise map_error(path, what_is_wrong(error)) from error
+        raise map_error(path, why_unreadable(error)) from error
 
 
 def _thinned(points: Points, leaf_m: float) -> Points:

@@ -61,8 +61,10 @@ def _numbers(name: str, value: ArrayLike, shape: str) -> NDArray[Any]:
     expected = f"{name}: expected real numbers of shape {shape}"
     try:
         array = np.asarray(value)
-    except ValueError as error:  # rows of different lengths
-        raise ManycoreError(f"{expected}, found {error}", EXIT_BAD_INPUT) from error
+    except ValueError as error:
+        raise ManycoreError(
+            f"{expected}, found rows of different lengths", EXIT_BAD_INPUT
+        ) from error
     if array.dtype.kind not in "fiu":
         raise ManycoreError(f"{expected}, found elements of {array.dtype}", EXIT_BAD_INPUT)
     return array

@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.files.unreadable import why_unreadable
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.recordings.stamps import in_seconds
@@ -82,7 +83,7 @@ def read_poses(path: Path) -> PoseLine:
             raise ValueError(f"expected {FORMATS}, found {columns} numbers")
         return PoseLine(T, in_seconds(table[:, 0]) if first else np.zeros(0))
     except (OSError, UnicodeDecodeError, ValueError) as error:
-        raise ManycoreError(f"poses {path}: {error}", EXIT_BAD_INPUT) from error
+        raise ManycoreError(f"poses {path}: {why_unreadable(error)}", EXIT_BAD_INPUT) from error
 
 
 def _table(path: Path) -> Matrix:

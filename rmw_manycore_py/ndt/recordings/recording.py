@@ -22,8 +22,8 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, what_is_wrong
-from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.files.unreadable import UNREADABLE, why_no_arrays, why_unreadable
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.geometry.poses import rigid, transform
 from rmw_manycore_py.ndt.geometry.precision import needs_doubles, why_coarse
@@ -173,7 +173,7 @@ def load_recording(path: Path) -> Recording:
             # Entries that are no arrays are loaded as bytes.
             arrays = {name: np.asarray(file[name]) for name in file.files}
     except UNREADABLE as error:
-        raise _bad(path, f"cannot be read as npz: {what_is_wrong(error)}") from error
+        raise _bad(path, f"cannot be read as npz: {why_no_arrays(error)}") from error
     missing = RECORDING_ARRAYS - arrays.keys()
     if missing:
         raise _bad(path, f"has no array {', '.join(sorted(missing))}")
@@ -192,7 +192,7 @@ def load_recording(path: Path) -> Recording:
             StoredTimes(arrays["times"], arrays["offsets"]) if "times" in arrays else None,
         )
     except UNREADABLE as error:
-        raise _bad(path, what_is_wrong(error)) from error
+        raise _bad(path, why_unreadable(error)) from error
 
 
 def _problem(arrays: dict[str, npt.NDArray[Any]]) -> str | None:

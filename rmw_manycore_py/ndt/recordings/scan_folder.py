@@ -14,9 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, what_is_wrong
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.files.cloud_file import read_cloud, suffix_of
-from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
+from rmw_manycore_py.ndt.files.unreadable import UNREADABLE, why_no_arrays, why_unreadable
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.recordings.matching import recorded
 from rmw_manycore_py.ndt.recordings.pose_file import FORMATS, read_poses
@@ -44,16 +44,30 @@ def read_scan(path: Path) -> Points:
     """Return the points (n, 3) of a file."""
     try:
         if suffix_of(path) == ".bin":
-            columns = 5 if path.name.lower().endswith(".pcd.bin") else 4
-            return np.fromfile(path, np.float32).reshape(-1, columns)[:, :3]
+            return _floats(path)
         if suffix_of(path) == ".npy":
-            array = np.load(path, allow_pickle=False)
-            if array.ndim < 2 or array.shape[-1] < 3:
-                raise ValueError(f"expected points (n, 3 or more), found the shape {array.shape}")
-            return np.asarray(array.reshape(-1, array.shape[-1])[:, :3], np.float32)
+            return _array(path)
     except UNREADABLE as error:
-        raise ManycoreError(f"scan {path}: {what_is_wrong(error)}", EXIT_BAD_INPUT) from error
+        raise ManycoreError(f"scan {path}: {why_unreadable(error)}", EXIT_BAD_INPUT) from error
     return read_cloud(path)
+
+
+def _floats(path: Path) -> Points:
+    columns = 5 if path.name.lower().endswith(".pcd.bin") else 4
+    size_bytes = path.stat().st_size
+    if size_bytes % (4 * columns):
+        raise ValueError(f"expected points of {4 * columns} bytes, found {size_bytes} bytes")
+    return np.fromfile(path, np.float32).reshape(-1, columns)[:, :3]
+
+
+def _array(path: Path) -> Points:
+    try:
+        array = np.load(path, allow_pickle=False)
+    except UNREADABLE as error:
+        raise ValueError(why_no_arrays(error)) from error
+    if array.ndim < 2 or array.shape[-1] < 3 or array.dtype.kind not in "iuf":
+        raise ValueError(f"expected points (n, 3 or more), found the shape {array.shape}")
+    return np.asarray(array.reshape(-1, array.shape[-1])[:, :3], np.float32)
 
 
 def open_folder(folder: Path, poses_path: Path | None) -> Recording:

@@ -92,11 +92,12 @@ def of_names(paths: list[Path]) -> Matrix:
 def read_stamps(path: Path) -> Matrix:
     """Read one time per line: numbers, or dates as in KITTI's raw recordings."""
     lines = [line.strip() for line in path.read_text().splitlines() if line.strip()]
+    return in_seconds(np.array([_time_of(path, line) for line in lines]))
+
+
+def _time_of(path: Path, line: str) -> float | np.datetime64:
     try:
-        if lines and "-" in lines[0] and ":" in lines[0]:
-            return in_seconds(
-                np.array([line.replace(" ", "T") for line in lines], "datetime64[ns]")
-            )
-        return in_seconds(np.array([float(line.split()[0]) for line in lines]))
-    except ValueError as error:
-        raise ValueError(f"{path}: expected one time per line: {error}") from error
+        is_date = "-" in line and ":" in line
+        return np.datetime64(line.replace(" ", "T"), "ns") if is_date else float(line.split()[0])
+    except ValueError:
+        raise ValueError(f"{path}: expected one time per line, found '{line[:40]}'") from None

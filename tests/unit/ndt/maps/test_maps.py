@@ -150,8 +150,8 @@ def test_a_single_file_is_everywhere(tmp_path):
     [
         ("map.npz", None, "no such file"),
         ("map.las", b"", "ends in .pcd, .ply, .npz"),
-        ("map.npz", b"PK\3\4 broken", "cannot be read as npz"),
-        ("map.npz", b"", "cannot be read as npz"),
+        ("map.npz", b"PK\3\4 broken", "cannot be read as npz: it is damaged or cut short"),
+        ("map.npz", b"", "cannot be read as npz: it is damaged or cut short"),
         ("map.pcd", b"# .PCD v0.7\nrubbish", "DATA, found 'rubbish'"),
         ("map.pcd", b"", "its header is broken: it has no line DATA"),
         ("map.ply", b"ply\nrubbish", "expected an element or a property, found 'rubbish'"),
@@ -206,7 +206,7 @@ def test_npz_files_of_damaged_arrays(tmp_path, member, words):
 
 def test_a_map_that_announces_more_than_there_is(tmp_path):
     write_boastful_npz(tmp_path / "map.npz")
-    with pytest.raises(ManycoreError, match=r"map\.npz: .*Unable to allocate 3\.00 PiB"):
+    with pytest.raises(ManycoreError, match=r"map\.npz: .*it announces more data than memory"):
         read_points(tmp_path / "map.npz")
     with (tmp_path / "scan.npy").open("wb") as file:
         header = {"descr": "<f4", "fortran_order": False, "shape": (1 << 48, 3)}

@@ -182,14 +182,30 @@ def test_poses_that_are_none(tmp_path, text, words):
         read_poses(tmp_path / "poses.txt")
 
 
-@pytest.mark.parametrize("array", [None, np.float32(1.0), np.zeros((4, 2), np.float32)])
-def test_arrays_that_are_no_scans(tmp_path, array):
+@pytest.mark.parametrize(
+    ("array", "words"),
+    [
+        (None, "damaged or cut short"),
+        (np.float32(1.0), "found the shape"),
+        (np.zeros((4, 2), np.float32), "found the shape"),
+        (np.array([None]), "holds Python objects"),
+    ],
+)
+def test_arrays_that_are_no_scans(tmp_path, array, words):
     scan = tmp_path / "0.npy"
     scan.write_bytes(b"")
     if array is not None:
         np.save(scan, array)
-    with pytest.raises(ManycoreError, match=r"scan .*0\.npy"):
+    with pytest.raises(ManycoreError, match=rf"scan .*0\.npy: .*{words}"):
         read_scan(scan)
+
+
+def test_times_that_are_none(tmp_path):
+    folder = kitti_folder(tmp_path / "drive")
+    (folder / "poses.txt").write_text(kitti(POSES))
+    (folder / "times.txt").write_text("0.1\nnoon\n")
+    with pytest.raises(ManycoreError, match="expected one time per line, found 'noon'"):
+        open_recording(folder)
 
 
 def test_folders_that_are_none(tmp_path):
@@ -206,7 +222,7 @@ def test_folders_that_are_none(tmp_path):
     (folder / "velodyne" / "0.bin").write_bytes(b"12345")
     (folder / "times.txt").unlink()
     (folder / "poses.txt").write_text(kitti(POSES))
-    with pytest.raises(ManycoreError, match=r"scan .*0\.bin"):
+    with pytest.raises(ManycoreError, match=r"scan .*0\.bin: expected points of 16 bytes"):
         open_recording(folder).scan(0)
     (tmp_path / "broken.mcap").write_bytes(b"rubbish")
     with pytest.raises(ManycoreError, match="no bag"):
