@@ -25,6 +25,7 @@ from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay.tally import Summary, Tally, as_json
 
 MAP_VOXEL_M = 0.2
+KEPT_SHARE = 0.98  # of the wanted rate: less is reported
 
 
 @click.command(
@@ -191,6 +192,15 @@ def _map_of(recording: Path, drive: Recording, map_path: Path | None) -> Points:
     return read_points(map_path)
 
 
+def _pace(s: Summary) -> str:
+    """Return the rate at which scans were sent, and by how much that is not the wanted one."""
+    if s.wanted_hz is None:
+        return f"sent {s.rate_hz:.1f} scans a second, each after the answer to the last one"
+    kept = f"sent {s.rate_hz:.1f} scans a second"
+    is_slow = s.rate_hz < KEPT_SHARE * s.wanted_hz
+    return f"{kept}, {s.wanted_hz:.1f} were due: this machine is too slow" if is_slow else kept
+
+
 def _print(summary: Summary, deadline_ms: float) -> None:
     s = summary
     table = new_table("", "#median", "#p99", "#max")
@@ -206,6 +216,7 @@ def _print(summary: Summary, deadline_ms: float) -> None:
             continue  # no scan was answered, or guesses were not made here
         table.add_row(name, *("" if value is None else f"{value:.3f}" for value in values))
     print_table(table)
+    echo(_pace(s))
     cpu = "" if s.node_cpu_percent is None else f"; matcher's CPU: {s.node_cpu_percent:.1f} %"
     echo(
         f"{s.scans} scans: {s.answered} answered, {s.lost} lost, {s.late} after {deadline_ms:g} "

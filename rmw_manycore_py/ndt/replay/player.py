@@ -99,6 +99,8 @@ class Player(Node):
             periods_s = np.diff(self._times_s)
             self._pace = 1.0 / (rate_hz * float(np.median(periods_s))) if len(periods_s) else 1.0
             self._times_s = np.arange(len(self._drive)) / rate_hz
+        if not waits and len(self._times_s) > 1:
+            self._tally.wanted_hz = (len(self._times_s) - 1) / float(self._times_s[-1])
         start, start_ns = time.monotonic() + LEAD_S, time.time_ns() + round(1e9 * LEAD_S)
         self._source.lead_in(start_ns)
         for index, time_s in enumerate(self._times_s):

@@ -25,7 +25,7 @@ GAP = "tab:red"
 
 def plot(tally: Tally, map_points: Points | None, path: Path) -> None:
     """Write the plot; the suffix of the path selects its format."""
-    figure = load_figure()(figsize=(15, 9), layout="constrained")
+    figure = load_figure()(figsize=(17, 9), layout="constrained")
     grid = figure.add_gridspec(3, 2, width_ratios=(1, 1.2))
     _draw_map(figure, figure.add_subplot(grid[:, 0]), tally, map_points)
     along_m = distances_m(tally)
@@ -65,7 +65,9 @@ def _draw_map(figure: Any, axes: Any, tally: Tally, map_points: Points | None) -
     if len(lost):
         axes.plot(*lost.T, "x", color=GAP, label="no pose")
     axes.set(xlabel="x [m]", ylabel="y [m]", title="map and path", aspect="equal")
-    axes.legend()
+    figure.legend(
+        *axes.get_legend_handles_labels(), loc="outside lower left", ncols=3, frameon=False
+    )
 
 
 def _draw_errors(axes: Any, tally: Tally, along_m: Matrix) -> None:
@@ -76,7 +78,7 @@ def _draw_errors(axes: Any, tally: Tally, along_m: Matrix) -> None:
     axes.plot(along_m, errors[:, 0], label="result [m]")
     axes.plot(along_m, errors[:, 1], label="result [degrees]")
     axes.set(title="error", yscale="log")
-    axes.legend(loc="upper right")
+    _name_curves(axes)
 
 
 def _draw_scores(axes: Any, tally: Tally, along_m: Matrix) -> None:
@@ -85,7 +87,7 @@ def _draw_scores(axes: Any, tally: Tally, along_m: Matrix) -> None:
         before = _reported(tally, f"{name}_before")
         axes.plot(along_m, before, ":", color=color, linewidth=1, label=f"{label}, before")
     axes.set(title="scores")
-    axes.legend(loc="upper right")
+    _name_curves(axes)
 
 
 def _draw_latencies(axes: Any, tally: Tally, along_m: Matrix) -> None:
@@ -94,7 +96,12 @@ def _draw_latencies(axes: Any, tally: Tally, along_m: Matrix) -> None:
     axes.plot(along_m, _reported(tally, "execution_time"), label="in the matcher")
     axes.axhline(tally.deadline_ms, color="0.5", linewidth=1, label="deadline")
     axes.set(title="latency", ylabel="ms", ylim=(0, None))
-    axes.legend(loc="upper right")
+    _name_curves(axes)
+
+
+def _name_curves(axes: Any) -> None:
+    """Add the legend beside the panel, where it covers no curve."""
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
 
 
 def _draw_gaps(axes: Any, tally: Tally, along_m: Matrix) -> None:

@@ -67,6 +67,8 @@ class Summary:
     latency_ms_median: float
     latency_ms_p99: float
     latency_ms_max: float
+    rate_hz: float  # at which scans were sent
+    wanted_hz: float | None  # None: each waited for the answer to the last one
     node_cpu_percent: float | None
 
     @property
@@ -77,9 +79,13 @@ class Summary:
 
 @dataclass
 class Tally:
-    """All scans played so far."""
+    """All scans played so far.
+
+    :param wanted_hz: rate at which scans are due, if they do not wait for answers.
+    """
 
     deadline_ms: float
+    wanted_hz: float | None = None
     rows: list[Played] = field(default_factory=list)
     cpu_s: list[tuple[float, float]] = field(default_factory=list)  # (wall, CPU) of the node
 
@@ -130,8 +136,14 @@ class Tally:
             latency_ms_median=_figure(latencies, 50),
             latency_ms_p99=_figure(latencies, 99),
             latency_ms_max=_figure(latencies, 100),
+            rate_hz=self._rate_hz(),
+            wanted_hz=self.wanted_hz,
             node_cpu_percent=self._cpu_percent(),
         )
+
+    def _rate_hz(self) -> float:
+        span_s = self.rows[-1].sent_s - self.rows[0].sent_s if self.rows else 0.0
+        return (len(self.rows) - 1) / span_s if span_s > 0.0 else float("nan")
 
     def _cpu_percent(self) -> float | None:
         """Return CPU time over wall time between the node's first and last report."""

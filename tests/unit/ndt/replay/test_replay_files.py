@@ -99,7 +99,7 @@ def test_pictures_are_drawn_with_gaps_and_without_answers(tally, tmp_path):
     drawn = (tmp_path / "plot.svg").read_text()
     for title in ("map and path", "error", "scores", "latency", "no pose"):
         assert f"<!-- {title} -->" in drawn
-    assert "<!-- scan 3 -->" in (tmp_path / "picture.svg").read_text()
+    assert "<!-- scans, where found -->" in (tmp_path / "picture.svg").read_text()
     for row in tally.rows:
         row.result = None
     write(tally, plot=tmp_path / "none.svg", picture=tmp_path / "none3.svg")
