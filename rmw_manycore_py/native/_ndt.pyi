@@ -48,6 +48,11 @@ class VoxelMap:
     ) -> NDArray[np.float32]:
         """Return of each point (N, 3) the best voxel's score (N,), NaN where it sees none."""
 
+    def point_evidence(
+        self, points: NDArray[np.float32], pose: NDArray[np.float64], outlier_ratio: float
+    ) -> NDArray[np.float32]:
+        """Return (N, 4): score, height in the column, known columns around, 1 behind a surface."""
+
     @staticmethod
     def attach(shared_path: str) -> VoxelMap:
         """Return the map that another process named by `shared_path`; it outlives that process."""
@@ -121,7 +126,8 @@ class SerialMatcher:
     """Matches scans (N, 3) [m, sensor frame] on the calling thread.
 
     `maps`: levels of one map, coarsest first; a scan is aligned to each, from where the one before
-    has led. Scores and derivatives are those of the last.
+    has led, from `maps[first]` on. Scores and derivatives are those of the last but `polishing`
+    maps: the latter only refine the pose.
     """
 
     def __init__(self, options: MatchOptions) -> None: ...
@@ -131,9 +137,15 @@ class SerialMatcher:
         points: NDArray[np.float32],
         guess: NDArray[np.float64],
         regularization_position_m: tuple[float, float] | None = None,
+        first: int = 0,
+        polishing: int = 0,
     ) -> NewtonResult: ...
     def evaluate(
-        self, maps: list[VoxelMap], points: NDArray[np.float32], pose: NDArray[np.float64]
+        self,
+        maps: list[VoxelMap],
+        points: NDArray[np.float32],
+        pose: NDArray[np.float64],
+        polishing: int = 0,
     ) -> Derivatives: ...
 
 class WorkerGroup:
@@ -146,9 +158,15 @@ class WorkerGroup:
         points: NDArray[np.float32],
         guess: NDArray[np.float64],
         regularization_position_m: tuple[float, float] | None = None,
+        first: int = 0,
+        polishing: int = 0,
     ) -> NewtonResult: ...
     def evaluate(
-        self, maps: list[VoxelMap], points: NDArray[np.float32], pose: NDArray[np.float64]
+        self,
+        maps: list[VoxelMap],
+        points: NDArray[np.float32],
+        pose: NDArray[np.float64],
+        polishing: int = 0,
     ) -> Derivatives: ...
     def prepare(self, maps: list[VoxelMap]) -> None:
         """Let the workers map it, so that the next alignment need not wait for that."""

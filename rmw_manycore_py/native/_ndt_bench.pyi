@@ -54,7 +54,13 @@ class ThreadMatcher:
         points: NDArray[np.float32],
         guess: NDArray[np.float64],
         regularization_position_m: tuple[float, float] | None = None,
+        first: int = 0,
+        polishing: int = 0,
     ) -> NewtonResult: ...
     def evaluate(
-        self, maps: list[VoxelMap], points: NDArray[np.float32], pose: NDArray[np.float64]
+        self,
+        maps: list[VoxelMap],
+        points: NDArray[np.float32],
+        pose: NDArray[np.float64],
+        polishing: int = 0,
     ) -> Derivatives: ...

@@ -62,16 +62,16 @@ void ThreadMatcher::put(const MapView & map, const float * xyz_m, size_t count) 
 NewtonResult ThreadMatcher::align(
   const Levels & levels, const float * xyz_m, size_t count, const Pose6 & guess,
   const std::optional<Regularization> & regularization) {
-  const std::vector<MapView> views = views_of(levels);
-  put(views.back(), xyz_m, count);
+  const Descent descent = descent_of(levels);
+  put(descent.scored(), xyz_m, count);
   problem_.regularization = regularization;
   return descend(
-    views, problem_, guess, [&](const Problem &, const Pose6 & pose) { return run_pass(pose); });
+    descent, problem_, guess, [&](const Problem &, const Pose6 & pose) { return run_pass(pose); });
 }
 
 Derivatives ThreadMatcher::evaluate(
   const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose) {
-  put(views_of(levels).back(), xyz_m, count);
+  put(descent_of(levels).scored(), xyz_m, count);
   return run_pass(pose);
 }
 

@@ -2,6 +2,7 @@
 #include "ndt/matching/matcher.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "platform/error.hpp"
@@ -12,6 +13,13 @@ namespace {
 /// Convergence threshold of coarse levels, as a fraction of the voxel size: the next finer level
 /// converges from anywhere within a voxel.
 constexpr double coarse_epsilon_voxels = 0.025;
+/// A polished pose is at most this many of its level's voxels away from the scored level's.
+constexpr double polish_voxels = 0.3;
+/// Minimum share of the scored level's points that a polishing level sees: where the map is sparse,
+/// it has no voxels there.
+constexpr double polish_points_share = 0.6;
+/// Minimum score of a polished pose on the scored level, whose maximum is lower than its own.
+constexpr double polish_score_share = 0.97;
 
 MatchOptions options_of(const MatchOptions & options, const MapView & level, bool is_last) {
   MatchOptions out = options;
@@ -22,46 +30,88 @@ MatchOptions options_of(const MatchOptions & options, const MapView & level, boo
   return out;
 }
 
+/// Adds the steps of one level to those of all.
+void add_steps(const NewtonResult & level, uint32_t & iterations, Path & path) {
+  iterations += level.iterations;
+  for (uint32_t step = 1; step < level.path.count; ++step) {
+    path.add(level.path.poses[step]);
+  }
+}
+
+double apart_m(const Pose6 & a, const Pose6 & b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+/// Whether a finer level's result is a better place of the same maximum: near, seen by most of the
+/// points that the scored level sees, and no worse there.
+bool refines(
+  const NewtonResult & fine, const MapView & map, const NewtonResult & scored,
+  const Derivatives & at) {
+  return fine.outcome == Outcome::converged &&
+         apart_m(fine.pose, scored.pose) <= polish_voxels * map.header->voxel_size_m &&
+         fine.at.points >= polish_points_share * scored.at.points &&
+         at.score >= polish_score_share * scored.at.score;
+}
+
 }  // namespace
 
 NewtonResult descend(
-  const std::vector<MapView> & levels, Problem & problem, const Pose6 & guess,
+  const Descent & levels, Problem & problem, const Pose6 & guess,
   const EvaluateProblem & evaluate) {
+  const auto at = [&](const Pose6 & pose) { return evaluate(problem, pose); };
+  const size_t scored = levels.maps.size() - levels.polishing - 1;
   NewtonResult result;
   result.pose = guess;
   uint32_t iterations = 0;
   Path path;
   path.add(guess);
-  for (size_t i = 0; i < levels.size(); ++i) {
-    problem.map = levels[i];
-    const MatchOptions options = options_of(problem.options, levels[i], i + 1 == levels.size());
-    result =
-      maximise(result.pose, options, [&](const Pose6 & pose) { return evaluate(problem, pose); });
-    iterations += result.iterations;
-    for (uint32_t step = 1; step < result.path.count; ++step) {
-      path.add(result.path.poses[step]);
-    }
+  const auto align_to = [&](size_t level, bool is_last) {
+    problem.map = levels.maps[level];
+    const MatchOptions options = options_of(problem.options, problem.map, is_last);
+    const NewtonResult found = maximise(result.pose, options, at);
+    add_steps(found, iterations, path);
+    return found;
+  };
+  for (size_t i = 0; i <= scored; ++i) {
+    result = align_to(i, i + 1 == levels.maps.size());
   }
+  const Derivatives first = result.first;
+  for (size_t i = scored + 1; i < levels.maps.size() && result.outcome == Outcome::converged; ++i) {
+    const NewtonResult fine = align_to(i, i + 1 == levels.maps.size());
+    problem.map = levels.scored();
+    const Derivatives there = at(fine.pose);
+    if (!refines(fine, levels.maps[i], result, there)) {
+      result = align_to(scored, true);  // it ended early
+      break;
+    }
+    result.pose = fine.pose;
+    result.at = there;
+  }
+  result.first = first;
   result.iterations = iterations;
   result.path = path;
   return result;
 }
 
 void check_levels(const Levels & levels) {
-  const bool has_null = std::find(levels.begin(), levels.end(), nullptr) != levels.end();
-  if (levels.empty() || levels.size() > max_levels || has_null) {
+  const auto & maps = levels.maps;
+  const bool has_null = std::find(maps.begin(), maps.end(), nullptr) != maps.end();
+  if (maps.empty() || maps.size() > max_levels || has_null) {
     throw Error(
       ErrorCode::invalid_argument, "maps: expected 1 to " + std::to_string(max_levels) +
                                      " levels, none of them null, found " +
-                                     std::to_string(levels.size()));
+                                     std::to_string(maps.size()));
+  }
+  if (levels.first + levels.polishing >= maps.size()) {
+    throw Error(ErrorCode::invalid_argument, "maps: expected a scored level, found none");
   }
 }
 
-std::vector<MapView> views_of(const Levels & levels) {
+Descent descent_of(const Levels & levels) {
   check_levels(levels);
-  std::vector<MapView> out;
-  for (const VoxelMap * level : levels) {
-    out.push_back(level->view());
+  Descent out{{}, levels.polishing};
+  for (size_t i = levels.first; i < levels.maps.size(); ++i) {
+    out.maps.push_back(levels.maps[i]->view());
   }
   return out;
 }

@@ -12,10 +12,15 @@
 
 namespace manycore::ndt {
 
-/// Maps of the same points with decreasing voxel sizes. A scan is aligned to each in turn, starting
-/// from the previous result; the last level's result counts. Borrowed during the call.
-using Levels = std::vector<const VoxelMap *>;
-constexpr size_t max_levels = 4;
+/// Maps of the same points with decreasing voxel sizes, borrowed during the call. A scan is aligned
+/// to each in turn, starting from the previous result; scores and derivatives are those of the last
+/// that does not polish.
+struct Levels {
+  std::vector<const VoxelMap *> maps;
+  size_t first = 0;      ///< index of the map that the alignment begins on; workers keep all
+  size_t polishing = 0;  ///< number of finest maps that only refine the pose
+};
+constexpr size_t max_levels = 6;
 
 /// A scan, the map it is matched to, and the options.
 struct Problem {
@@ -37,16 +42,25 @@ Derivatives finish_pass(const Problem & problem, const TangentSums & sums, const
 /// Derivatives of a problem at a pose.
 using EvaluateProblem = std::function<Derivatives(const Problem &, const Pose6 &)>;
 
-/// Aligns level by level, coarsest first; sets problem.map to each level. Iterations and path cover
-/// all levels; the other results are the last level's.
-NewtonResult descend(
-  const std::vector<MapView> & levels, Problem & problem, const Pose6 & guess,
-  const EvaluateProblem & evaluate);
+/// Views of the levels that an alignment uses; the last `polishing` only refine the pose.
+struct Descent {
+  std::vector<MapView> maps;
+  size_t polishing = 0;
 
-/// Throws Error{invalid_argument} unless there are 1 to max_levels levels, none of them null.
+  /// The map of scores and derivatives.
+  const MapView & scored() const { return maps[maps.size() - polishing - 1]; }
+};
+
+/// Aligns level by level, coarsest first; sets problem.map to each level. Iterations and path cover
+/// all levels; the other results are those of the scored level.
+NewtonResult descend(
+  const Descent & levels, Problem & problem, const Pose6 & guess, const EvaluateProblem & evaluate);
+
+/// Throws Error{invalid_argument} unless there are 1 to max_levels levels, none of them null, and
+/// one of those that an alignment uses is scored.
 void check_levels(const Levels & levels);
 
-std::vector<MapView> views_of(const Levels & levels);
+Descent descent_of(const Levels & levels);
 
 /// Computes all bins on the calling thread.
 Derivatives evaluate_alone(const Problem & problem, const Kernel & kernel, const Pose6 & pose);

@@ -11,17 +11,17 @@ Problem SerialMatcher::problem(const MapView & map, const float * xyz_m, size_t 
 NewtonResult SerialMatcher::align(
   const Levels & levels, const float * xyz_m, size_t count, const Pose6 & guess,
   const std::optional<Regularization> & regularization) {
-  const std::vector<MapView> views = views_of(levels);
-  Problem matched = problem(views.back(), xyz_m, count);
+  const Descent descent = descent_of(levels);
+  Problem matched = problem(descent.scored(), xyz_m, count);
   matched.regularization = regularization;
-  return descend(views, matched, guess, [&](const Problem & level, const Pose6 & pose) {
+  return descend(descent, matched, guess, [&](const Problem & level, const Pose6 & pose) {
     return evaluate_alone(level, kernel_, pose);
   });
 }
 
 Derivatives SerialMatcher::evaluate(
   const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose) {
-  return evaluate_alone(problem(views_of(levels).back(), xyz_m, count), kernel_, pose);
+  return evaluate_alone(problem(descent_of(levels).scored(), xyz_m, count), kernel_, pose);
 }
 
 }  // namespace manycore::ndt

@@ -18,7 +18,7 @@ public:
   NewtonResult align(
     const Levels & levels, const float * xyz_m, size_t count, const Pose6 & guess,
     const std::optional<Regularization> & regularization);
-  /// Derivatives at a pose, on the last level.
+  /// Derivatives at a pose, on the scored level.
   Derivatives evaluate(
     const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose);
 

@@ -92,12 +92,12 @@ void Worker::do_job(uint32_t job) {
   job_ = job;
   pass_ = 0;
   waited_ns_ = 0;
-  std::vector<MapView> levels;
-  for (size_t i = what.first_level; i < maps_.size(); ++i) {
-    levels.push_back(maps_[i].map.view());
+  Descent levels{{}, what.polishing};
+  for (size_t i = what.first_level; i < what.end_level; ++i) {
+    levels.maps.push_back(maps_[i].map.view());
   }
   Problem problem{
-    levels.back(), view_scan(&scan_.at<float>(0), what.points), what.options, std::nullopt};
+    levels.scored(), view_scan(&scan_.at<float>(0), what.points), what.options, std::nullopt};
   if (what.has_regularization) {
     problem.regularization = what.regularization;
   }

@@ -77,13 +77,14 @@ void WorkerGroup::put_scan(const float * xyz_m, size_t count) {
   session_.what.points = lay_out_scan(xyz_m, count, &scan_.at<float>(0)).points;
 }
 
-void WorkerGroup::put_levels(const Levels & levels, size_t first_level) {
+void WorkerGroup::put_levels(const Levels & levels) {
   check_levels(levels);
   Job & what = session_.what;
-  what.levels = static_cast<uint32_t>(levels.size());
-  what.first_level = static_cast<uint32_t>(first_level);
-  for (size_t i = 0; i < levels.size(); ++i) {
-    name_part(what.maps[i], levels[i]->header().id, levels[i]->memory());
+  what.levels = what.end_level = static_cast<uint32_t>(levels.maps.size());
+  what.first_level = static_cast<uint32_t>(levels.first);
+  what.polishing = static_cast<uint32_t>(levels.polishing);
+  for (size_t i = 0; i < levels.maps.size(); ++i) {
+    name_part(what.maps[i], levels.maps[i]->header().id, levels.maps[i]->memory());
   }
 }
 
@@ -92,7 +93,7 @@ NewtonResult WorkerGroup::align(
   const std::optional<Regularization> & regularization) {
   const std::lock_guard lock(busy_);
   Job & what = session_.what;
-  put_levels(levels, 0);
+  put_levels(levels);
   put_scan(xyz_m, count);
   what.options = options_;
   what.guess = guess;
@@ -105,8 +106,10 @@ Derivatives WorkerGroup::evaluate(
   const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose) {
   const std::lock_guard lock(busy_);
   Job & what = session_.what;
-  check_levels(levels);
-  put_levels(levels, levels.size() - 1);
+  put_levels(levels);
+  what.end_level = what.levels - what.polishing;
+  what.first_level = what.end_level - 1;
+  what.polishing = 0;
   put_scan(xyz_m, count);
   what.options = options_;
   what.options.max_iterations = 0;

@@ -24,7 +24,7 @@ public:
   NewtonResult align(
     const Levels & levels, const float * xyz_m, size_t count, const Pose6 & guess,
     const std::optional<Regularization> & regularization);
-  /// Derivatives at a pose, on the last level.
+  /// Derivatives at a pose, on the scored level.
   Derivatives evaluate(
     const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose);
   /// Makes the workers map the levels, so that the next alignment does not have to wait for it.
@@ -41,7 +41,7 @@ public:
   uint64_t memory_bytes(size_t points) const noexcept;
 
 private:
-  void put_levels(const Levels & levels, size_t first_level);
+  void put_levels(const Levels & levels);
   void put_scan(const float * xyz_m, size_t count);
   NewtonResult run_job();
   bool attempt();

@@ -26,6 +26,8 @@ struct Job {
   SharedPart maps[max_levels];  ///< coarsest first; workers keep only these attached
   uint32_t levels;              ///< 0 = only check that all workers run
   uint32_t first_level;         ///< level to start the alignment on
+  uint32_t end_level;           ///< behind the last level of the alignment
+  uint32_t polishing;           ///< number of the last of these that only refine the pose
   SharedPart scan;
   uint64_t points;
   MatchOptions options;

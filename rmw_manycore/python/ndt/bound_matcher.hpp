@@ -16,6 +16,8 @@
 
 namespace manycore::ndt::python {
 
+using Maps = std::vector<const VoxelMap *>;
+
 /// A matcher bound to Python; releases the GIL while it computes.
 template<typename Matcher>
 class Bound {
@@ -25,19 +27,22 @@ public:
   : scale_factor_(options.regularization_scale_factor), matcher_(options, more...) {}
 
   NewtonResult align(
-    const Levels & maps, const FloatPoints & points, const PoseMatrix & guess,
-    const std::optional<std::pair<double, double>> & position_m) {
+    const Maps & maps, const FloatPoints & points, const PoseMatrix & guess,
+    const std::optional<std::pair<double, double>> & position_m, size_t first, size_t polishing) {
     std::optional<Regularization> regularization;
     if (position_m) {
       regularization = Regularization{scale_factor_, position_m->first, position_m->second};
     }
     const nanobind::gil_scoped_release released;
-    return matcher_.align(maps, points.data(), points.shape(0), pose_from(guess), regularization);
+    const Levels levels{maps, first, polishing};
+    return matcher_.align(levels, points.data(), points.shape(0), pose_from(guess), regularization);
   }
 
-  Derivatives evaluate(const Levels & maps, const FloatPoints & points, const PoseMatrix & pose) {
+  Derivatives evaluate(
+    const Maps & maps, const FloatPoints & points, const PoseMatrix & pose, size_t polishing) {
     const nanobind::gil_scoped_release released;
-    return matcher_.evaluate(maps, points.data(), points.shape(0), pose_from(pose));
+    const Levels levels{maps, 0, polishing};
+    return matcher_.evaluate(levels, points.data(), points.shape(0), pose_from(pose));
   }
 
   Matcher & matcher() { return matcher_; }
@@ -54,10 +59,11 @@ nanobind::class_<Bound<Matcher>> bind_matcher(nanobind::module_ & module, const 
   return nanobind::class_<Self>(module, name)
     .def(
       "align", &Self::align, nanobind::arg("maps"), nanobind::arg("points"), nanobind::arg("guess"),
-      nanobind::arg("regularization_position_m") = nanobind::none())
+      nanobind::arg("regularization_position_m") = nanobind::none(), nanobind::arg("first") = 0,
+      nanobind::arg("polishing") = 0)
     .def(
       "evaluate", &Self::evaluate, nanobind::arg("maps"), nanobind::arg("points"),
-      nanobind::arg("pose"));
+      nanobind::arg("pose"), nanobind::arg("polishing") = 0);
 }
 
 }  // namespace manycore::ndt::python

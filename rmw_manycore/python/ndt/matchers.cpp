@@ -20,9 +20,9 @@ namespace {
 
 using Group = Bound<WorkerGroup>;
 
-void prepare(Group & group, const Levels & maps) {
+void prepare(Group & group, const Maps & maps) {
   const nb::gil_scoped_release released;
-  group.matcher().prepare(maps);
+  group.matcher().prepare({maps});
 }
 
 /// (worker, pass, begin, end) of the last align() or evaluate(); times in ns.

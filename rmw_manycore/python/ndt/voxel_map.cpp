@@ -5,6 +5,7 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
+#include "ndt/kernel/evidence.hpp"
 #include "ndt/kernel/point_scores.hpp"
 #include "python/ndt/arrays.hpp"
 #include "python/ndt/bindings.hpp"
@@ -31,6 +32,19 @@ nb::ndarray<nb::numpy, float, nb::ndim<1>> scores_of_points(
   return nb::ndarray<nb::numpy, float, nb::ndim<1>>(scores, {count}, owner);
 }
 
+nb::ndarray<nb::numpy, float, nb::shape<-1, 4>> evidence_of_points(
+  const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose, double outlier_ratio) {
+  const size_t count = points.shape(0);
+  auto * const evidence = new PointEvidence[count];
+  const nb::capsule owner(
+    evidence, [](void * p) noexcept { delete[] static_cast<PointEvidence *>(p); });
+  {
+    const nb::gil_scoped_release released;
+    point_evidence(map.view(), outlier_ratio, pose_from(pose), points.data(), count, evidence);
+  }
+  return nb::ndarray<nb::numpy, float, nb::shape<-1, 4>>(&evidence->score, {count, 4}, owner);
+}
+
 }  // namespace
 
 void bind_voxel_map(nb::module_ & module) {
@@ -38,6 +52,9 @@ void bind_voxel_map(nb::module_ & module) {
     .def("__init__", &init_voxel_map, nb::arg("points"), nb::arg("options"))
     .def(
       "point_scores", &scores_of_points, nb::arg("points"), nb::arg("pose"),
+      nb::arg("outlier_ratio"))
+    .def(
+      "point_evidence", &evidence_of_points, nb::arg("points"), nb::arg("pose"),
       nb::arg("outlier_ratio"))
     .def_static(
       "attach",

@@ -16,10 +16,11 @@ import numpy as np
 from rmw_manycore_py.bench.ndt.contenders import usable
 from rmw_manycore_py.bench.ndt.trust_cases import Case, Shares, cases_of, looked_again, searched
 from rmw_manycore_py.bench.ndt.trust_helpers import Helpers, TrustHelpers
-from rmw_manycore_py.bench.ndt.trust_worlds import drives
+from rmw_manycore_py.bench.ndt.trust_variants import drives
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE
 from rmw_manycore_py.ndt.trust.score_level import FIRST_SHARE, ScoreLevel
 from rmw_manycore_py.ndt.trust.search import Found, Region
 
@@ -29,8 +30,11 @@ BELIEVED, REFUSED = "wrong poses believed", "right poses refused"
 AT_START = "wrong poses believed at a start"
 LET_OUT, LET_OUT_AT_START = "wrong poses let out at all", "wrong poses let out at a start"
 REFUSED_AT_START = "right poses refused at a start"
+MISSED = "scans with a guess within 1 m and no right pose"
+MISSED_AT_START = "first scans with a guess within 1 m and no right pose"
 SHARES = "share of the drive's median, chosen without the drive"
 FIRST_SHARES = "share of the map's score for a first pose, chosen without the drive"
+EXPLAINED_SHARES = "share of the usual score for an explained score, chosen without the drive"
 OURS, AUTOWARE = "rmw_manycore", "as Autoware"
 AUTOWARE_SCORE = 2.3  # converged_param_nearest_voxel_transformation_likelihood
 SEARCHED, FOUND_WRONG = "right places found by a search", "wrong places found by a search"
@@ -39,6 +43,7 @@ SEARCHES = 8  # per drive
 # different drive: scores of a sparse map vary more along the way. A first pose must fit better than
 # all wrong ones of the other drives, plus a margin.
 LEFT_BELOW, DRIVE_ROOM, MAP_ROOM, FIRST_ROOM = 0.003, 0.07, 0.1, 0.03
+EXPLAINED_ROOM = 0.02
 AROUND_M, GLOBAL_M = 5.0, 20.0
 
 
@@ -87,6 +92,9 @@ def judged(
     starts = [replace(case, before=()) for case in right]
     refuse_at_start = list(helpers.map(refused, starts))
     results = [
+        *_missed(
+            _picked([[c for c in pool if c.is_near] for pool in pools], count), shares, helpers
+        ),
         _share(BELIEVED, OURS, [one.misleads for one in outcomes.values()]),
         _share(LET_OUT, OURS, [one.is_let_out for one in outcomes.values()]),
         _share(BELIEVED, AUTOWARE, [_as_autoware(case) for case in wrong]),
@@ -95,6 +103,7 @@ def judged(
         _share(REFUSED_AT_START, OURS, refuse_at_start),
         Result(SHARES, OURS, "", tuple(one.of_drive for one in shares.values())),
         Result(FIRST_SHARES, OURS, "", tuple(one.of_first for one in shares.values())),
+        Result(EXPLAINED_SHARES, OURS, "", tuple(one.of_explained for one in shares.values())),
     ]
     for name in cases:
         of_drive = [case for case in wrong if case.drive == name]
@@ -113,6 +122,23 @@ def judged(
         }
         results += [_share(question, OURS, is_so) for question, is_so in answers.items() if is_so]
     return [*results, *_searches(wrong, shares, searches, helpers)]
+
+
+def _missed(near: Sequence[Case], shares: dict[str, Shares], helpers: Helpers) -> list[Result]:
+    """Return how many scans with a near guess get no right pose at once, also by drive."""
+
+    def missed(case: Case) -> bool:
+        return is_missed(case, shares[case.drive], helpers)
+
+    starts = [replace(case, before=()) for case in near]
+    results = []
+    for question, cases in ((MISSED, near), (MISSED_AT_START, starts)):
+        is_so = list(helpers.map(missed, cases))
+        results.append(_share(question, OURS, is_so))
+        for name in shares:
+            of_drive = [one for one, case in zip(is_so, cases, strict=True) if case.drive == name]
+            results += [_share(f"{question}: {name}", OURS, of_drive)] if of_drive else []
+    return results
 
 
 def _is_judged(case: Case) -> bool:
@@ -154,19 +180,20 @@ def _is_there(found: Found, case: Case) -> bool:
 def chosen(cases: Sequence[Case]) -> Shares:
     """Choose the shares from the right poses of some drives."""
     right = [case for case in cases if case.is_right]
-    of_map = [case.alignment.nearest_voxel_likelihood / case.own_score for case in right]
+    of_map = [case.score / case.own_score for case in right]
     of_drive = [
-        case.alignment.nearest_voxel_likelihood / float(np.median([b.score for b in case.before]))
+        case.score / float(np.median([b.score for b in case.before]))
         for case in right
         if case.before
     ]
-    wrong = [
-        case.alignment.fit / case.own_score for case in cases if case.is_wrong and not case.repeats
-    ]
+    wrong = [case for case in cases if case.is_wrong and not case.repeats]
+    fits = [case.alignment.fit / case.own_score for case in wrong]
+    explained = [case.alignment.explained_score / case.own_score for case in wrong]
     return Shares(
         float(np.quantile(of_map, LEFT_BELOW)) - MAP_ROOM,
         float(np.quantile(of_drive, LEFT_BELOW)) - DRIVE_ROOM,
-        max(wrong, default=FIRST_SHARE - FIRST_ROOM) + FIRST_ROOM,
+        max(fits, default=FIRST_SHARE - FIRST_ROOM) + FIRST_ROOM,
+        max(explained, default=EXPLAINED_SHARE - EXPLAINED_ROOM) + EXPLAINED_ROOM,
     )
 
 
@@ -216,6 +243,13 @@ def is_refused(case: Case, shares: Shares, helpers: Helpers) -> bool:
     return True
 
 
+def is_missed(case: Case, shares: Shares, helpers: Helpers) -> bool:
+    """Return whether a scan gets no right pose at once, without a search."""
+    if not case.judged(shares).is_believed:
+        case = helpers.call(looked_again, case, shares)
+    return not (case.judged(shares).is_believed and case.is_right)
+
+
 def _level_of(case: Case, shares: Shares) -> ScoreLevel:
     level = shares.level()
     level.map_changed(case.own_score)
@@ -246,6 +280,8 @@ def _goals() -> tuple[Goal, ...]:
     return (
         Goal(BELIEVED, OURS, "within", 0.0, statistic="mean"),
         Goal(REFUSED, OURS, "within", 1.0, statistic="mean"),
+        Goal(MISSED, OURS, "within", 1.0, statistic="mean"),
+        Goal(MISSED_AT_START, OURS, "within", 1.0, statistic="mean"),
     )
 
 

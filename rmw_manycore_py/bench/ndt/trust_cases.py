@@ -12,8 +12,9 @@ from functools import cache
 
 import numpy as np
 
-from rmw_manycore_py.bench.ndt.trust_worlds import Drive, drives
-from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelMap
+from rmw_manycore_py.bench.ndt.trust_variants import drives
+from rmw_manycore_py.bench.ndt.trust_worlds import Drive
+from rmw_manycore_py.ndt import Alignment, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Pose, ScanPoints, scan_points
 from rmw_manycore_py.ndt.geometry.thinning import spread_indices
@@ -22,7 +23,6 @@ from rmw_manycore_py.ndt.trust.region_search import sketcher_of
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
 from rmw_manycore_py.ndt.trust.search import Found, Region, search
 
-OPTIONS = MatcherOptions(search="radius")  # the node's options
 MATCHED_POINTS = 30_000  # the node's limit
 RIGHT_M, RIGHT_DEG = 0.2, 1.0
 WRONG_M, WRONG_DEG = 0.5, 3.0
@@ -31,6 +31,7 @@ WRONG_M, WRONG_DEG = 0.5, 3.0
 NEAR = ((0.3, 2.0), (1.0, 5.0), (2.0, 10.0))
 FAR = ((3.0, 40.0), (5.0, 20.0), (8.0, 40.0), (15.0, 90.0), (1.0, 180.0))
 ALONG_M = (12.0, 20.0)
+NEAR_M, NEAR_RAD = 1.1, np.radians(6.0)
 HISTORY = 20
 HISTORY_M, HISTORY_RAD = 0.03, 0.003  # error of the preceding poses
 SEED = 11
@@ -44,10 +45,11 @@ class Shares:
     of_map: float
     of_drive: float
     of_first: float
+    of_explained: float
 
     def level(self) -> ScoreLevel:
         """Return a level that has learned nothing yet."""
-        return ScoreLevel(self.of_map, self.of_drive, self.of_first)
+        return ScoreLevel(self.of_map, self.of_drive, self.of_first, self.of_explained)
 
 
 @dataclass(frozen=True)
@@ -71,8 +73,8 @@ class World:
     @classmethod
     def of(cls, drive: Drive) -> World:
         """Build the map."""
-        voxel_map = VoxelMap.from_points(drive.map_points, OPTIONS)
-        matcher = SerialMatcher(OPTIONS)
+        voxel_map = VoxelMap.from_points(drive.map_points, drive.options)
+        matcher = SerialMatcher(drive.options)
         matcher.set_map(voxel_map)
         return cls(drive, voxel_map, matcher)
 
@@ -91,7 +93,7 @@ def world_of(drive: str) -> World:
 def searched(drive: str, index: int, region: Region) -> Found:
     """Search for a scan of a drive like the node does."""
     world = world_of(drive)
-    sketcher = sketcher_of(world.voxel_map, OPTIONS)
+    sketcher = sketcher_of(world.voxel_map, world.drive.options)
     return search(sketcher, world.matcher, world.scan(index), region)
 
 
@@ -128,6 +130,18 @@ class Case:
         return self.error_m > WRONG_M or self.error_deg > WRONG_DEG
 
     @property
+    def is_near(self) -> bool:
+        """Return whether the guess is so near that its scan should get a pose."""
+        is_near = poses.distance_m(self.guess, self.truth) < NEAR_M
+        is_turned = poses.angle_rad(self.guess, self.truth) > NEAR_RAD
+        return is_near and not is_turned and not self.repeats
+
+    @property
+    def score(self) -> float:
+        """Return the score that is judged."""
+        return max(self.alignment.nearest_voxel_likelihood, self.alignment.explained_score)
+
+    @property
     def error_m(self) -> float:
         """Return the distance from the truth."""
         return poses.distance_m(self.alignment.T_map_sensor, self.truth)
@@ -143,21 +157,37 @@ class Case:
         judge = PoseJudge(level)
         level.map_changed(self.own_score)
         for one in self.before:
-            seen = replace(self.alignment, T_map_sensor=one.T, nearest_voxel_likelihood=one.score)
+            seen = replace(
+                self.alignment,
+                T_map_sensor=one.T,
+                nearest_voxel_likelihood=one.score,
+                explained_score=0.0,
+            )
             judge.believe(one.stamp_s, seen, one.guess)
         return judge.judge(self.stamp_s, self.alignment, self.guess)
 
 
 def looked_again(case: Case, shares: Shares) -> Case:
-    """Return the case after the second look that the node takes at a refused result."""
+    """Return the case after the further looks that the node takes at a refused result."""
     world = world_of(case.drive)
+    scan = world.scan(case.index)
+
+    def explained(found: Alignment) -> Case:
+        return replace(case, alignment=world.matcher.explained(found, scan))
+
+    if case.judged(shares).is_score_low:
+        closer = world.matcher.align_once(scan, case.guess, only_pose=True, is_close=True)
+        if explained(closer).judged(shares).is_believed:
+            return explained(closer)
+    if not case.before:  # left to a search
+        return case
     found = world.matcher.second_look(
         case.alignment,
-        world.scan(case.index),
+        scan,
         case.guess,
-        convinces=lambda found: replace(case, alignment=found).judged(shares).is_believed,
+        convinces=lambda found: explained(found).judged(shares).is_believed,
     )
-    return replace(case, alignment=found)
+    return explained(found)
 
 
 def cases_of(name: str, count: int, wanted: int) -> list[Case]:
@@ -171,13 +201,15 @@ def cases_of(name: str, count: int, wanted: int) -> list[Case]:
     scans = {index: world.scan(index) for index in _spread(drive.tested, count)}
     scores: dict[int, float] = {}
     for index, scan in scans.items():
-        scores[index] = matcher.score(scan, drive.poses[index]).nearest_voxel_likelihood
+        likelihood = matcher.score(scan, drive.poses[index]).nearest_voxel_likelihood
+        scores[index] = max(likelihood, matcher.explained_score(scan, drive.poses[index]))
     found: list[Case] = []
     rounds = -(-wanted // len(scans))
     for index, scan in scans.items():
         before = _before(drive, index, scores, generator)
         for guess in _guesses(drive.poses[index], rounds, generator):
             alignment = matcher.align_once(scan, guess, only_pose=True)
+            alignment = matcher.explained(alignment, scan)
             found.append(
                 Case(
                     name,

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from rmw_manycore_py.bench.ndt.world import DATA_VARIABLE
+from rmw_manycore_py.ndt import MatcherOptions
 from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.geometry.poses import transform
@@ -24,6 +25,7 @@ LENGTH_M = 120.0
 LIDAR = Lidar(rings=32, azimuths=400)
 STEP_M, PERIOD_S = 1.5, 0.1  # 15 m/s at 10 Hz
 MAPPING_M, SPARSE_MAPPING_M = 4.0, 16.0  # distance between mapping scans
+OPTIONS = MatcherOptions(search="radius")  # the node's options
 CONSECUTIVE_S = 1.0  # maximum time between scans of a drive
 
 
@@ -37,6 +39,7 @@ class Drive:
     :param scan: returns the points (n, 3) of a scan.
     :param is_drive: the scans are consecutive, so that motion can be estimated.
     :param repeats: places cannot be told apart by a single scan.
+    :param options: of map and matcher.
     """
 
     name: str
@@ -47,6 +50,7 @@ class Drive:
     scan: Callable[[int], Points]
     is_drive: bool
     repeats: bool = False
+    options: MatcherOptions = OPTIONS
 
 
 def drives() -> dict[str, Callable[[], Drive]]:

@@ -8,7 +8,16 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.bench.ndt import accuracy, alignments, basin, node, passes, split, trust
+from rmw_manycore_py.bench.ndt import (
+    accuracy,
+    alignments,
+    basin,
+    gaps,
+    node,
+    passes,
+    split,
+    trust,
+)
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
 
@@ -24,9 +33,10 @@ def command(pclomp: Path | None, **options: Any) -> None:
     """Measure scan matching beside its peers.
 
     PCL, pclomp, small_gicp and Open3D; also over workers. Also measures the convergence basin,
-    the rates of wrong poses believed and right poses refused, and the whole node: beside CPU
+    the rates of wrong poses believed and right poses refused, closed loops through gaps without
+    scans and through a tunnel, and the whole node: beside CPU
     load, with large scans, with new maps, and after a kill.
     """
-    own = [split.QUESTION, basin.QUESTION, trust.QUESTION]
+    own = [split.QUESTION, basin.QUESTION, trust.QUESTION, gaps.QUESTION]
     own += [accuracy.QUESTION, node.QUESTION]
     answer([passes.question(pclomp), alignments.question(pclomp), *own], **options)

@@ -66,6 +66,7 @@ class Alignment:
     :param first: score at the start of the steps on the finest map; without coarser maps, the score
         of the guess.
     :param path: (n, 4, 4) the guess and the pose after each step, on all maps; at most 64.
+    :param explained_score: score of what the map can contradict (evidence.py); 0 if not computed.
     :param looks: number of alignments that this one is the best of.
     :param is_refused: whether nothing was aligned.
     :param guesses_around: (4, 4) poses around the result used for its covariance, if any.
@@ -85,6 +86,7 @@ class Alignment:
     share_in_map: float = 0.0
     is_degenerate: bool = False
     xy_spread_m2: Matrix = field(default_factory=lambda: np.zeros((2, 2)))
+    explained_score: float = 0.0
     looks: int = 1
     is_refused: bool = False
     guesses_around: tuple[Pose, ...] = ()

@@ -37,6 +37,17 @@ def coarse_options(options: MatcherOptions, factor: float) -> _ndt.MapOptions:
     )
 
 
+def polish_options(options: MatcherOptions, factor: float) -> _ndt.MapOptions:
+    """Return the build options of a level that refines poses."""
+    return _ndt.MapOptions(
+        voxel_size_m=factor * options.voxel_size_m,
+        search=options.search,
+        covariance=options.voxel_covariance,
+        min_points_per_voxel=options.min_points_per_voxel,
+        widening_m=0.0,
+    )
+
+
 def match_options(options: MatcherOptions) -> _ndt.MatchOptions:
     """Return the options of matching."""
     return _ndt.MatchOptions(

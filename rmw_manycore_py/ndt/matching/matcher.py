@@ -23,6 +23,7 @@ from rmw_manycore_py.ndt.geometry.arrays import (
 )
 from rmw_manycore_py.ndt.matching import covariance
 from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
+from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE, SAMPLE, explained_score
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.level import levelled
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
@@ -37,7 +38,8 @@ Position = tuple[float, float]
 
 CANNOT_WORK = "the matcher cannot work"  # out of memory, or workers keep dying
 BUILT_FOR = (  # options that matcher and map must agree on
-    *("voxel_size_m", "coarse_levels", "second_look_levels", "search", "voxel_covariance"),
+    *("voxel_size_m", "coarse_levels", "second_look_levels", "polishing_levels"),
+    *("search", "voxel_covariance"),
 )
 FEWEST_POINTS = 6  # a pose has six unknowns; each point on a surface fixes one
 
@@ -60,8 +62,10 @@ class NativeMatcher(Protocol):
         points: ScanPoints,
         guess: Pose,
         regularization_position_m: Position | None = None,
+        first: int = 0,
+        polishing: int = 0,
     ) -> _ndt.NewtonResult:
-        """Align from a guess to one map after the other."""
+        """Align from a guess to one map after the other; the last `polishing` refine the pose."""
         ...
 
     def evaluate(
@@ -69,8 +73,9 @@ class NativeMatcher(Protocol):
         maps: list[_ndt.VoxelMap],
         points: ScanPoints,
         pose: Pose,
+        polishing: int = 0,
     ) -> _ndt.Derivatives:
-        """Return score and derivatives at a pose on the last map."""
+        """Return score and derivatives at a pose on the last map but `polishing`."""
         ...
 
 
@@ -143,7 +148,8 @@ class Matcher:
     ) -> Alignment:
         """Find the pose near the guess (4, 4) at which points (N, 3) [m, sensor frame] fit best.
 
-        Takes a second look if the result does not fit well enough (second_look.py).
+        If the result does not fit well enough, aligns to the finest level alone, and takes a second
+        look (second_look.py).
 
         :param T_map_guess: (4, 4) initial guess of T_map_sensor.
         :param T_map_regularization: (4, 4) pose that attracts the result along the vehicle's axis.
@@ -155,7 +161,9 @@ class Matcher:
             return asked
         found = self._aligned(asked)
         if not found.is_refused and not self._convinces(found):
-            found = self._looked_again(found, asked, self._convinces)
+            found = self._looked_closer(found, asked)
+            if self.options.second_look_levels and not self._convinces(found):
+                found = self._looked_again(found, asked, self._convinces)
         return found if only_pose else self._with_covariance(found, asked)
 
     def align_once(
@@ -166,15 +174,18 @@ class Matcher:
         *,
         only_pose: bool = False,
         is_wide: bool = False,
+        is_close: bool = False,
     ) -> Alignment:
         """Return the result of :meth:`align` without a second look.
 
         :param is_wide: align to the levels of a second look first.
+        :param is_close: align to the finest level alone. Where vehicles hide much, coarser levels
+            drag their roofs to the ground.
         """
         asked = self._asked(points, T_map_guess, T_map_regularization)
         if isinstance(asked, Alignment):
             return asked
-        found = self._aligned(asked, is_wide=is_wide)
+        found = self._aligned(asked, is_wide=is_wide, is_close=is_close)
         return found if only_pose else self._with_covariance(found, asked)
 
     def second_look(
@@ -214,11 +225,22 @@ class Matcher:
         return Question(scan, guess, (float(regularization[0, 3]), float(regularization[1, 3])))
 
     def _convinces(self, alignment: Alignment) -> bool:
-        """Return whether a result needs no second look, by the map's own score."""
-        if not self.options.second_look_levels:
+        """Return whether a result needs no further look, by the map's own score."""
+        if not self.options.coarse_levels:
             return True
-        least = CONVINCING_SHARE * self._require_map().own_likelihood
-        return not alignment.is_degenerate and alignment.fit > least
+        own = self._require_map().own_likelihood
+        fits = alignment.fit > CONVINCING_SHARE * own
+        return not alignment.is_degenerate and (
+            fits or alignment.explained_score > EXPLAINED_SHARE * own
+        )
+
+    def _looked_closer(self, first: Alignment, asked: Question) -> Alignment:
+        """Return what fits better: `first`, or the alignment to the finest level alone."""
+        first = self.explained(first, asked.scan)
+        if self._convinces(first):
+            return first
+        closer = self.explained(self._aligned(asked, is_close=True), asked.scan)
+        return max((first, closer), key=lambda one: max(one.fit, one.explained_score))
 
     def _looked_again(self, first: Alignment, asked: Question, convinces: Convinces) -> Alignment:
         def aligned_widely(start: Pose) -> Alignment:
@@ -226,14 +248,19 @@ class Matcher:
 
         return best_of_second_look(first, asked.guess, aligned_widely, convinces)
 
-    def _aligned(self, asked: Question, *, is_wide: bool = False) -> Alignment:
+    def _aligned(
+        self, asked: Question, *, is_wide: bool = False, is_close: bool = False
+    ) -> Alignment:
         voxel_map = self._require_map()
-        levels = voxel_map.levels if is_wide else voxel_map.first_levels
+        first = voxel_map.scored if is_close else 0 if is_wide else voxel_map.first
         guess = asked.guess
         level = levelled(asked.scan, guess)
         begin_ns = time.monotonic_ns()
         with translate_native_errors(CANNOT_WORK):
-            result = self._native.align(levels, level.points, level.guess, asked.position)
+            result = self._native.align(
+                *(voxel_map.levels, level.points, level.guess, asked.position),
+                *(first, voxel_map.polishing),
+            )
         if self.on_aligned is not None:
             self.on_aligned(begin_ns)
         points = result.at.scan_points
@@ -279,7 +306,26 @@ class Matcher:
         if pose_error(pose):
             return Score(0.0, 0.0, 0.0, 0)
         with translate_native_errors(CANNOT_WORK):
-            return Score.of(self._native.evaluate(voxel_map.first_levels, scan, pose))
+            found = self._native.evaluate(voxel_map.levels, scan, pose, voxel_map.polishing)
+        return Score.of(found)
+
+    def explained(self, alignment: Alignment, points: ArrayLike) -> Alignment:
+        """Return an alignment of points (N, 3) with its `explained_score`.
+
+        Takes a few milliseconds on the calling thread, so only for results in doubt.
+        """
+        if alignment.is_degenerate or alignment.explained_score > 0.0:
+            return alignment
+        score = self.explained_score(points, alignment.T_map_sensor)
+        return replace(alignment, explained_score=score)
+
+    def explained_score(self, points: ArrayLike, T_map_sensor: Pose) -> float:
+        """Return the score of points (N, 3) at a pose that the map can contradict (evidence.py)."""
+        voxel_map = self._require_map()
+        scan = scan_points(points)
+        sample = np.ascontiguousarray(scan[:: max(1, len(scan) // SAMPLE)])
+        evidence = voxel_map.finest.point_evidence(sample, T_map_sensor, self.options.outlier_ratio)
+        return explained_score(evidence.astype(np.float64), voxel_map.own_likelihood)
 
     def point_scores(self, points: ArrayLike, T_map_sensor: ArrayLike) -> NDArray[np.float32]:
         """Return for each of points (N, 3) at a pose (4, 4) the score of its best voxel (N,).

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
+from itertools import pairwise
 from typing import Literal, get_args, get_type_hints
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
@@ -12,7 +13,7 @@ from rmw_manycore_py.native.enums import Search, StepRule, VoxelCovariance
 
 PoseCovariance = Literal["laplace", "fixed", "multi_ndt", "multi_ndt_score"]
 Offsets = tuple[tuple[float, float], ...]
-MAX_LEVELS = 4  # including the finest; limit of the kernel
+MAX_LEVELS = 6  # of all kinds; limit of the kernel
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,7 @@ class MatcherOptions:
     """Options of map and matcher; the defaults are Autoware's where it has them.
 
     Exceptions are ``coarse_levels``, ``wide_levels`` and ``voxel_covariance``, which enlarge the
-    basin of convergence (docs/design/ndt.md).
+    basin of convergence, and ``polish_levels`` (docs/design/ndt.md).
 
     :param voxel_size_m: edge of a voxel; "resolution" in Autoware and PCL.
     :param coarse_levels: maps a scan is aligned to first, as multiples of the voxel size in
@@ -28,6 +29,9 @@ class MatcherOptions:
     :param wide_levels: maps that precede them in a second look (second_look.py), as multiples of
         the voxel size; only those coarser than all of ``coarse_levels`` count. Without any, or
         without coarse levels, no second look is taken.
+    :param polish_levels: maps that only refine the pose found, as multiples of the voxel size in
+        decreasing order; none without coarse levels. Scores and covariances remain those of
+        ``voxel_size_m``.
     :param search: voxel neighbourhood of a point. ``radius``: voxels whose mean is within one voxel
         size (PCL, Autoware); ``direct7``: its own and those across the six faces; ``direct1``: its
         own.
@@ -58,6 +62,7 @@ class MatcherOptions:
     voxel_size_m: float = 2.0
     coarse_levels: tuple[float, ...] = (2.0,)
     wide_levels: tuple[float, ...] = (4.0,)
+    polish_levels: tuple[float, ...] = ()
     search: Search = "direct7"
     voxel_covariance: VoxelCovariance = "pcl"
     min_points_per_voxel: int = 6
@@ -101,8 +106,13 @@ class MatcherOptions:
         return tuple(factor for factor in self.wide_levels if factor > self.coarse_levels[0])
 
     @property
+    def polishing_levels(self) -> tuple[float, ...]:
+        """Return the polish levels that count."""
+        return self.polish_levels if self.coarse_levels else ()
+
+    @property
     def coarser_levels(self) -> tuple[float, ...]:
-        """Return the levels of a map but the finest one, coarsest first."""
+        """Return the levels of a map that are coarser than the voxel size, coarsest first."""
         return self.second_look_levels + self.coarse_levels
 
     def _check_words(self) -> None:
@@ -122,9 +132,13 @@ class MatcherOptions:
                 if factor <= finer:
                     raise _error(name, "decreasing numbers above 1", factors)
                 finer = factor
-        if len(self.coarser_levels) >= MAX_LEVELS:
-            limit = f"at most {MAX_LEVELS - 1} with wide_levels"
-            raise _error("coarse_levels", limit, self.coarser_levels)
+        for coarser, finer in pairwise((1.0, *self.polish_levels)):
+            self._check_number("polish_levels", finer, 0.01, 1.0)
+            if finer >= coarser:
+                raise _error("polish_levels", "decreasing numbers below 1", self.polish_levels)
+        if len(self.coarser_levels) + len(self.polish_levels) >= MAX_LEVELS:
+            limit = f"at most {MAX_LEVELS - 1} with wide_levels and polish_levels"
+            raise _error("coarse_levels", limit, self.coarser_levels + self.polish_levels)
 
     def _check_offsets(self) -> None:
         for offset in self.offsets_m:

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +18,7 @@ from rmw_manycore_py.ndt.matching.kernel_options import (
     coarse_options,
     map_options,
     match_options,
+    polish_options,
 )
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 
@@ -29,7 +31,8 @@ class VoxelMap:
     A map can only be used with the search, voxel sizes and covariance of the options it was built
     with.
 
-    :param levels: coarsest first, with those of a second look.
+    :param levels: coarsest first: those of a second look, the coarse ones, the one of all scores,
+        and those that refine poses.
     :param own_likelihood: nearest-voxel likelihood of the map's own points: an approximate upper
         bound for scans.
     """
@@ -38,7 +41,8 @@ class VoxelMap:
         self, levels: list[_ndt.VoxelMap], options: MatcherOptions, own_likelihood: float
     ) -> None:
         self.levels = levels
-        self.first_levels = levels[len(options.second_look_levels) :]
+        self.first = len(options.second_look_levels)
+        self.scored = len(options.coarser_levels)
         self.options = options
         self.own_likelihood = own_likelihood
 
@@ -56,8 +60,9 @@ class VoxelMap:
                 _ndt.VoxelMap(xyz_m, coarse_options(options, factor))
                 for factor in options.coarser_levels
             ]
+            polishing = list(_polishing(xyz_m, options))
             own_likelihood = _likelihood(finest, xyz_m, options)
-        return cls([*coarse, finest], options, own_likelihood)
+        return cls([*coarse, finest, *polishing], options, own_likelihood)
 
     @classmethod
     def attach(
@@ -79,18 +84,30 @@ class VoxelMap:
 
     @property
     def finest(self) -> _ndt.VoxelMap:
-        """Return the level used for scores and results."""
-        return self.levels[-1]
+        """Return the level used for scores."""
+        return self.levels[self.scored]
+
+    @property
+    def polishing(self) -> int:
+        """Return the number of levels that only refine poses."""
+        return len(self.levels) - self.scored - 1
 
     @property
     def voxels(self) -> int:
-        """Return the number of voxels of the finest level."""
+        """Return the number of voxels of the level used for scores."""
         return self.finest.voxels
 
     @property
     def size_bytes(self) -> int:
         """Return the memory of all levels in bytes."""
         return sum(level.size_bytes for level in self.levels)
+
+
+def _polishing(xyz_m: Matrix, options: MatcherOptions) -> Iterator[_ndt.VoxelMap]:
+    """Yield the levels that refine poses, as far as the points allow: none is essential."""
+    with suppress(_ndt.NdtError):  # too few points for such voxels, or too many voxels
+        for factor in options.polishing_levels:
+            yield _ndt.VoxelMap(xyz_m, polish_options(options, factor))
 
 
 def _likelihood(finest: _ndt.VoxelMap, points: Matrix, options: MatcherOptions) -> float:

@@ -43,7 +43,6 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.steps import report_steps
 from rmw_manycore_py.ndt.nodes.scan_matcher.tracking import (
     AutowareTracking,
     RobustTracking,
-    ScanAt,
     Tracked,
     Tracking,
 )
@@ -51,6 +50,7 @@ from rmw_manycore_py.ndt.nodes.support.clock import clock_s
 from rmw_manycore_py.ndt.nodes.support.declared import declare
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
+from rmw_manycore_py.ndt.trust.looks import ScanAt
 from rmw_manycore_py.process.cpu_time import tree_cpu_s
 
 MAP_UPDATE_PERIOD_S = 1.0

@@ -12,7 +12,8 @@ import numpy as np
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Matrix6, Pose
 from rmw_manycore_py.ndt.matching.alignment import Alignment
-from rmw_manycore_py.ndt.trust.motion import Believed, Expectation, MotionModel
+from rmw_manycore_py.ndt.trust.along import Along
+from rmw_manycore_py.ndt.trust.motion import STEADY_SHARE, Believed, Expectation, MotionModel
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
 
 MIN_SHARE_IN_MAP = 0.3  # of the points: below, the vehicle is outside the map or elsewhere
@@ -23,7 +24,10 @@ UNSURE_M, UNSURE_RAD = 1.0, 0.2  # standard deviations of an unconfirmed pose
 # Minimum spread of a scan that does not constrain the position along a street. It is 0.14 to 0.48
 # on streets, also repetitive ones, and recorded scans; 0.62 and more in a bare tunnel.
 WEAK_SPREAD_M = 0.55
-WEAK_M = 2.0  # standard deviation along the weak axis
+WEAK_M = 2.0  # standard deviation along the weak axis, where it begins
+WEAK_DRIFT = 0.05  # growth of that per metre driven
+GAP_DRIFT = 0.5 * STEADY_SHARE  # likewise in a gap, where nothing checks the odometry
+RESOLVED_AFTER = 2  # times that a place stood out along the uncertain direction
 COVERED_DEVIATIONS = 3.0
 COVERED_M, COVERED_RAD = 0.5, np.radians(3.0)  # error covered without a weak axis
 
@@ -36,14 +40,20 @@ class Verdict:
     :param is_sure: believed, and confirmed by the previous poses.
     :param level: the required score.
     :param expected: expected pose of the vehicle, if known.
-    :param weak_axis: direction (2,) in the map in which the scan does not constrain the position.
+    :param along: direction in which the position is uncertain.
+    :param is_weak: the scan itself does not constrain the position in that direction.
+    :param is_score_low: the score refuses the pose, whatever else does.
+    :param is_plausible: the motion leads there, as far as it is known.
     """
 
     why: str
     is_sure: bool
     level: float
     expected: Expectation | None
-    weak_axis: Matrix | None = None
+    along: Along | None = None
+    is_weak: bool = False
+    is_score_low: bool = False
+    is_plausible: bool = True
 
     @property
     def is_believed(self) -> bool:
@@ -53,21 +63,42 @@ class Verdict:
     def covariance(self, of_sure: Matrix6) -> Matrix6:
         """Return the covariance (6, 6): that of a sure pose, enlarged if this one is not sure."""
         wide: Matrix6 = of_sure.copy()
-        if not self.is_sure:
+        if not self.is_sure and (self.along is None or not self.along.is_open):
             least = np.square([*(UNSURE_M,) * 3, *(UNSURE_RAD,) * 3])
             np.fill_diagonal(wide, np.maximum(np.diag(of_sure), least))
-        if self.weak_axis is not None:
-            wide[:2, :2] += WEAK_M**2 * np.outer(self.weak_axis, self.weak_axis)
+        if self.along is not None:
+            wide[:2, :2] += self.along.covariance_m2
         return wide
 
+    def corrected(self, T: Pose) -> Pose:
+        """Return a pose that follows the guesses along the direction that its scan leaves open.
+
+        There an alignment ends at the nearest of many maxima, one for each voxel.
+        """
+        if self.along is None or not self.is_weak or self.expected is None:
+            return T
+        expected, guess = self.expected, self.expected.guess
+        base = expected.poses[0] if expected.is_steady else expected.middle
+        if guess is not None and abs(self.along.offset_m(base, guess)) <= self.along.reach_m:
+            base = guess
+        return self.along.moved(T, self.along.offset_m(T, base))
+
+    @property
+    def uncertain(self) -> Along | None:
+        """Return the direction along which one of several places may stand out, if any."""
+        along = self.along
+        if not self.is_believed and self.expected is not None and along is None:
+            along = self.expected.gap
+        return along if along is not None and along.is_open else None
+
     def covers(self, T: Pose, truth: Pose) -> bool:
-        """Return whether an error is explained by the weak axis; for tests of the judge."""
+        """Return whether the uncertain direction explains an error; for tests of the judge."""
         error = T[:3, 3] - truth[:3, 3]
-        if self.weak_axis is not None:
-            along = float(error[:2] @ self.weak_axis)
-            if abs(along) > COVERED_DEVIATIONS * WEAK_M:
+        if self.along is not None:
+            along_m = float(error[:2] @ self.along.axis)
+            if abs(along_m) > COVERED_DEVIATIONS * self.along.deviation_m:
                 return False
-            error[:2] -= along * self.weak_axis
+            error[:2] -= along_m * self.along.axis
         is_near = bool(np.linalg.norm(error) <= COVERED_M)
         return is_near and poses.angle_rad(T, truth) <= COVERED_RAD
 
@@ -84,6 +115,7 @@ class PoseJudge:
         self.motion = MotionModel()
         self._recent: deque[float] = deque(maxlen=DROP_SCORES)
         self._confirmed = 0
+        self._along: Along | None = None
 
     def forget(self) -> None:
         """Reset: the vehicle may be anywhere."""
@@ -91,16 +123,60 @@ class PoseJudge:
         self.motion.forget()
         self._recent.clear()
         self._confirmed = 0
+        self._along = None
 
-    def judge(self, stamp_s: float, alignment: Alignment, guess: Pose | None) -> Verdict:
+    def judge(
+        self,
+        stamp_s: float,
+        alignment: Alignment,
+        guess: Pose | None,
+        *,
+        stood_out: int = 0,
+    ) -> Verdict:
         """Judge the alignment of a scan, from any start. Does not change the state.
 
         :param guess: the guess T_map_base of the scan.
+        :param stood_out: how often the place stood out along the uncertain direction.
         """
         expected = self.motion.at(stamp_s, guess)
-        why = self._why_not(alignment, expected)
+        along = self._uncertain(expected, stood_out)
+        unusable = _why_unusable(alignment)
+        low = "" if unusable else self._why_low(alignment, is_first=expected is None)
+        implausible = "" if unusable else _why_implausible(alignment, expected, along)
+        why = unusable or low or implausible
+        weak = weak_axis(alignment)
+        if stood_out >= RESOLVED_AFTER:
+            along = None
+        elif weak is not None:
+            along = Along(weak, self._drifted_m(alignment, expected, along))
+        elif along is not None and not along.is_open:
+            along = None
         is_sure = not why and expected is not None and self._confirmed >= SURE_AFTER
-        return Verdict(why, is_sure, self.level.level, expected, weak_axis(alignment))
+        is_sure = is_sure and (along is None or not along.is_open)
+        level, is_weak = self.level.level, weak is not None
+        is_low, is_plausible = bool(low), not implausible
+        return Verdict(why, is_sure, level, expected, along, is_weak, is_low, is_plausible)
+
+    def _uncertain(self, expected: Expectation | None, stood_out: int) -> Along | None:
+        """Return the direction in which the expected pose is uncertain."""
+        gap = None if expected is None else expected.gap
+        if gap is None or (expected is not None and expected.is_steady and not stood_out):
+            return self._along
+        if self._along is None or gap.deviation_m > self._along.deviation_m:
+            return gap
+        return self._along
+
+    def _drifted_m(
+        self, alignment: Alignment, expected: Expectation | None, along: Along | None
+    ) -> float:
+        """Return the deviation along a weak axis: it grows until features return."""
+        driven_m = 0.0
+        if expected is not None:
+            moved_m = poses.distance_m(expected.last, alignment.T_map_sensor)
+            driven_m = max(moved_m, expected.guess_motion_m)
+        before_m = WEAK_M if along is None else max(WEAK_M, along.deviation_m)
+        is_gap = expected is not None and expected.gap is not None
+        return before_m + (GAP_DRIFT if is_gap else WEAK_DRIFT) * driven_m
 
     def may_look_again(self, verdict: Verdict) -> bool:
         """Return whether a refused result may be replaced by one from farther off.
@@ -110,13 +186,25 @@ class PoseJudge:
         """
         return verdict.expected is not None or not self._searches
 
-    def believe(self, stamp_s: float, alignment: Alignment, guess: Pose | None) -> None:
+    def believe(
+        self,
+        stamp_s: float,
+        alignment: Alignment,
+        guess: Pose | None,
+        *,
+        stood_out: int = 0,
+    ) -> None:
         """Continue from a pose that was judged good."""
+        verdict = self.judge(stamp_s, alignment, guess, stood_out=stood_out)
+        self._along = verdict.along
+        if stood_out and verdict.expected is not None and verdict.expected.gap is None:
+            self.motion.correct(alignment.T_map_sensor, verdict.expected)
         self._confirmed += 1
         self.motion.believe(stamp_s, alignment.T_map_sensor, guess)
-        self._recent.append(alignment.nearest_voxel_likelihood)
+        score = max(alignment.nearest_voxel_likelihood, alignment.explained_score)
+        self._recent.append(score)
         if self._confirmed > SURE_AFTER:
-            self.level.learn(alignment.nearest_voxel_likelihood)
+            self.level.learn(score)
 
     def begin_at(self, at: Believed) -> None:
         """Continue from a pose found by a search or left by a previous process.
@@ -126,25 +214,36 @@ class PoseJudge:
         self.forget()
         self.motion.believe(at.stamp_s, at.T, at.guess)
 
-    def _why_not(self, alignment: Alignment, expected: Expectation | None) -> str:
+    def _why_low(self, alignment: Alignment, *, is_first: bool) -> str:
+        """Return how a score is too low; "" also if foreign points, or unmapped ones, explain it.
+
+        :param is_first: no motion confirms the pose.
+        """
+        if alignment.explained_score > self.level.of_explained:
+            return ""
         score = alignment.nearest_voxel_likelihood
-        if alignment.is_degenerate:
-            return f"no convergence: {alignment.why}"
-        if alignment.share_in_map < MIN_SHARE_IN_MAP:
-            return f"only {100 * alignment.share_in_map:.0f} % of the points lie in the map"
         if not score > self.level.level:
             return f"the score {score:.3f} is not above the level {self.level.level:.3f}"
         if len(self._recent) == DROP_SCORES and score < DROP_SHARE * median(self._recent):
             return f"the score fell from {median(self._recent):.3f} to {score:.3f}"
-        if expected is None:
-            return self._why_not_first(alignment)
-        implausible = expected.why_implausible(alignment.T_map_sensor)
-        return f"the pose is implausible: {implausible}" if implausible else ""
+        if is_first and self._searches and not alignment.fit > self.level.of_first:
+            return f"the first pose's fit {alignment.fit:.3f} is below {self.level.of_first:.3f}"
+        return ""
 
-    def _why_not_first(self, alignment: Alignment) -> str:
-        if not self._searches or alignment.fit > self.level.of_first:
-            return ""
-        return f"the first pose's fit {alignment.fit:.3f} is below {self.level.of_first:.3f}"
+
+def _why_unusable(alignment: Alignment) -> str:
+    if alignment.is_degenerate:
+        return f"no convergence: {alignment.why}"
+    if alignment.share_in_map < MIN_SHARE_IN_MAP:
+        return f"only {100 * alignment.share_in_map:.0f} % of the points lie in the map"
+    return ""
+
+
+def _why_implausible(
+    alignment: Alignment, expected: Expectation | None, along: Along | None
+) -> str:
+    why = "" if expected is None else expected.why_implausible(alignment.T_map_sensor, along)
+    return f"the pose is implausible: {why}" if why else ""
 
 
 def weak_axis(alignment: Alignment) -> Matrix | None:

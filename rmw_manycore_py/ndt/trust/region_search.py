@@ -60,15 +60,20 @@ class RegionSearch:
     def _search(self, voxel_map: VoxelMap, scan: ScanPoints, region: Region) -> Found:
         # Keep the map until the result arrives: the helper attaches to this process's memory.
         paths = voxel_map.shared_paths
-        return self._helper.call(search_in_map, paths, self._options, scan, region)
+        own_score = voxel_map.own_likelihood
+        return self._helper.call(search_in_map, paths, own_score, self._options, scan, region)
 
 
 def search_in_map(
-    shared_paths: list[str], options: MatcherOptions, scan: ScanPoints, region: Region
+    shared_paths: list[str],
+    own_score: float,
+    options: MatcherOptions,
+    scan: ScanPoints,
+    region: Region,
 ) -> Found:
     """Search in the map of another process."""
     only_pose = replace(options, pose_covariance="fixed")
-    voxel_map = VoxelMap.attach(shared_paths, only_pose, 0.0)
+    voxel_map = VoxelMap.attach(shared_paths, only_pose, own_score)
     matcher = SerialMatcher(only_pose)
     matcher.set_map(voxel_map)
     return search(sketcher_of(voxel_map, only_pose), matcher, scan, region)
@@ -85,5 +90,5 @@ def sketcher_of(voxel_map: VoxelMap, options: MatcherOptions) -> SerialMatcher:
         trans_epsilon=min(0.1, options.step_size),
     )
     sketcher = SerialMatcher(coarse)
-    sketcher.set_map(VoxelMap(voxel_map.first_levels[:1], coarse, 0.0))
+    sketcher.set_map(VoxelMap([voxel_map.levels[voxel_map.first]], coarse, 0.0))
     return sketcher

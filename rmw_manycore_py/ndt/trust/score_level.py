@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import deque
 from statistics import median
 
+from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE
 from rmw_manycore_py.ndt.matching.second_look import CONVINCING_SHARE
 
 # Determined by `manycore bench ndt`, leaving out each recording in turn; see
@@ -35,10 +36,12 @@ class ScoreLevel:
         map_share: float = MAP_SHARE,
         drive_share: float = DRIVE_SHARE,
         first_share: float = FIRST_SHARE,
+        explained_share: float = EXPLAINED_SHARE,
     ) -> None:
         self._map_share = map_share
         self._drive_share = drive_share
         self._first_share = first_share
+        self._explained_share = explained_share
         self._map_score = 0.0
         self._scores: deque[float] = deque(maxlen=KEPT_SCORES)
 
@@ -69,6 +72,12 @@ class ScoreLevel:
     def of_first(self) -> float:
         """Return the minimum fit of a first pose without a search."""
         return self._first_share * self._map_score
+
+    @property
+    def of_explained(self) -> float:
+        """Return the minimum explained score, also of a first pose."""
+        usual = self._map_score if len(self._scores) < FEWEST_SCORES else median(self._scores)
+        return max(self.of_map, self._explained_share * usual)
 
     @property
     def level(self) -> float:

@@ -27,6 +27,9 @@ FOLLOWED = 16  # grid results that are refined with the whole scan
 SAME_M, SAME_RAD = 1.0, np.radians(10.0)  # closer results count as one place
 MARGIN = 0.05  # minimum lead of the best place, relative to its fit
 
+# A place also stands out if its lead is large compared with the differences of the others.
+MIN_LEAD, LEAD_DEVIATIONS, MIN_PLACES = 0.01, 2.5, 5
+
 
 @dataclass(frozen=True)
 class Region:
@@ -79,11 +82,12 @@ class Found:
         if not self.places:
             return "the scan fits nowhere"
         best = self.places[0]
-        if not region.any_yaw and not best.fit > level.of_first:
-            return f"the best fit {best.fit:.3f} is below {level.of_first:.3f}"
-        score = best.nearest_voxel_likelihood
-        if not score > level.of_map:
-            return f"the best score {score:.3f} is below {level.of_map:.3f}"
+        if not best.explained_score > level.of_explained:
+            if not region.any_yaw and not best.fit > level.of_first:
+                return f"the best fit {best.fit:.3f} is below {level.of_first:.3f}"
+            score = best.nearest_voxel_likelihood
+            if not score > level.of_map:
+                return f"the best score {score:.3f} is below {level.of_map:.3f}"
         if self.margin < MARGIN:
             other = self.places[1]
             apart_m = poses.distance_m(best.T_map_sensor, other.T_map_sensor)
@@ -99,12 +103,26 @@ def search(sketcher: Matcher, matcher: Matcher, scan: ScanPoints, region: Region
     """
     sketch = scan[:: max(1, len(scan) // SKETCH_POINTS)]
     tried = [sketcher.align_once(sketch, T, only_pose=True) for T in region.grid()]
-    rough = _distinct([one for one in tried if not one.is_degenerate], 0.5 * SAME_M)
+    rough = distinct([one for one in tried if not one.is_degenerate], 0.5 * SAME_M)
     fine = [matcher.align_once(scan, one.T_map_sensor, only_pose=True) for one in rough]
-    return Found(tuple(_distinct([one for one in fine if not one.is_degenerate], SAME_M)))
+    places = distinct([one for one in fine if not one.is_degenerate], SAME_M)
+    return Found(tuple(matcher.explained(place, scan) for place in places[:1]) + tuple(places[1:]))
 
 
-def _distinct(places: Sequence[Alignment], apart_m: float) -> list[Alignment]:
+def lead_of_best(places: Sequence[Alignment]) -> tuple[bool, bool]:
+    """Return whether the best of distinct places stands out from the others, and whether clearly.
+
+    In a street of few features the others differ little from each other, too.
+    """
+    found = Found(tuple(places))
+    if len(places) < MIN_PLACES:
+        return found.margin >= MARGIN, found.margin >= MARGIN
+    others = np.array([place.fit for place in places[1:]])
+    least = max(MIN_LEAD * places[0].fit, LEAD_DEVIATIONS * float(np.std(others)))
+    return places[0].fit - others[0] >= least, found.margin >= MARGIN
+
+
+def distinct(places: Sequence[Alignment], apart_m: float) -> list[Alignment]:
     """Return the best alignment of each place, best first."""
     kept: list[Alignment] = []
     for place in sorted(places, key=lambda one: one.fit, reverse=True):

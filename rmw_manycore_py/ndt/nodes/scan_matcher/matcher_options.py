@@ -29,6 +29,7 @@ def matcher_options(parameters: MatcherParameters, own: OwnParameters) -> Matche
         voxel_size_m=parameters.resolution_m,
         coarse_levels=() if as_autoware else own.coarse_levels,
         wide_levels=() if as_autoware else own.wide_levels,
+        polish_levels=own.polish_levels,
         search=own.search,
         voxel_covariance=own.voxel_covariance or ("autoware" if as_autoware else "pcl"),
         step_rule=own.step_rule or ("clamped" if as_autoware else "trust_region"),

@@ -1,22 +1,18 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Aligns a scan and judges the result: as Autoware does, or robustly with the drive's history.
 
-Robust tracking aligns again from the expected pose if the result of the guess is not believed, then
-takes a second look from the guess (matching/second_look.py), and starts a search after consecutive
-refused scans (docs/design/ndt_trust.md).
+Robust tracking looks again at a refused scan (trust/looks.py), and starts a search after several
+refused ones in a row (docs/design/ndt_trust.md).
 """
 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
-import numpy as np
-
-from rmw_manycore_py.ndt.geometry import poses
-from rmw_manycore_py.ndt.geometry.arrays import Matrix, Pose, ScanPoints
+from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.matching.alignment import Alignment
 from rmw_manycore_py.ndt.matching.matcher import Matcher
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
@@ -25,22 +21,13 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
 from rmw_manycore_py.ndt.trust.judge import PoseJudge, Verdict
 from rmw_manycore_py.ndt.trust.last_pose import LastPose
+from rmw_manycore_py.ndt.trust.look_along import LookAlong
+from rmw_manycore_py.ndt.trust.looks import Looks, ScanAt
 from rmw_manycore_py.ndt.trust.motion import Believed
 from rmw_manycore_py.ndt.trust.recovery import Recovery, Step
+from rmw_manycore_py.ndt.trust.repeats import RepeatedScans
 
-OTHER_M, OTHER_RAD = 0.3, np.radians(2.0)  # minimum distance of a second start from the guess
-VAIN_LOOKS = 5  # second looks in a row without result, after which none is taken
 MAX_LEFT_S = 60.0  # maximum age of a pose left by a previous process
-
-
-@dataclass(frozen=True)
-class ScanAt:
-    """A scan (N, 3) [m, base frame], its guess T_map_base and regularization pose."""
-
-    stamp_s: float
-    points: ScanPoints
-    guess: Pose
-    regularization: Pose | None
 
 
 @dataclass(frozen=True)
@@ -119,7 +106,9 @@ class RobustTracking:
         self._recovery = Recovery(matcher.options, own.recovery_after_scans, own.recovery_radius_m)
         path = Path(own.last_pose_path).expanduser()
         self._last_pose = LastPose(path) if own.last_pose_path else None
-        self._second_looks = self._vain_looks = 0
+        self._repeats = RepeatedScans()
+        self._looks = Looks(matcher, self._judge)
+        self._along = LookAlong(matcher, self._judge)
         self.was_activated = False
         left = self._last_pose.read(time.time(), MAX_LEFT_S) if self._last_pose else None
         if left is not None:
@@ -132,17 +121,19 @@ class RobustTracking:
         """Align and judge a scan; retry from the expected pose."""
         if self._recovery.take(self._judge):
             report.warn(f"recovery: {self._recovery.note}")
-        alignment = self._matcher.align_once(scan.points, scan.guess, scan.regularization)
-        verdict = self._judged(scan, alignment)
-        if not verdict.is_believed:
-            again = self._from_expectation(scan, verdict)
-            if again is None and self._judge.may_look_again(verdict):
-                again = self._looked_again(scan, alignment)
-            if again is not None:
-                alignment, verdict = again
+            self._looks.hope()
+        is_searching = self._recovery.step in (Step.AROUND, Step.GLOBALLY)
+        alignment, verdict = self._looks.look(scan, is_searching=is_searching)
+        found = None if is_searching else self._along.look(scan, verdict)
+        if found is None:
+            alignment = replace(alignment, T_map_sensor=verdict.corrected(alignment.T_map_sensor))
+        else:
+            alignment, verdict = found
+        if repeated := self._repeats.why_refused(scan.points, verdict.expected):
+            verdict = replace(verdict, why=repeated)
         self._report(alignment, verdict, report)
         if verdict.is_believed:
-            self._believe(scan, alignment)
+            self._believe(scan, alignment, 0 if found is None else self._along.stood_out)
         else:
             expected = scan.guess if verdict.expected is None else verdict.expected.poses[0]
             self._recovery.refused(scan.stamp_s, scan.points, scan.guess, expected)
@@ -157,13 +148,14 @@ class RobustTracking:
     def map_changed(self, voxel_map: VoxelMap) -> None:
         """Adapt the required score to the new map."""
         self._judge.level.map_changed(voxel_map.own_likelihood)
+        self._along.map_changed(voxel_map)
         self._recovery.map_changed(voxel_map)
 
     def activated(self, is_activated: bool) -> None:
         """Restart: an initial pose was found, or is being searched."""
         self._is_activated = is_activated
         self._judge.forget()
-        self._vain_looks = 0
+        self._looks.hope()
         self._recovery.reset()
         if self._last_pose is not None:
             self._last_pose.forget()
@@ -175,42 +167,10 @@ class RobustTracking:
             self._last_pose.forget()
             self._last_pose.close()
 
-    def _from_expectation(self, scan: ScanAt, before: Verdict) -> tuple[Alignment, Verdict] | None:
-        tried = [scan.guess]
-        for start in [] if before.expected is None else before.expected.poses:
-            if any(_is_near(start, other) for other in tried):
-                continue
-            tried.append(start)
-            alignment = self._matcher.align_once(scan.points, start, scan.regularization)
-            verdict = self._judged(scan, alignment)
-            if verdict.is_believed:
-                return alignment, verdict
-        return None
-
-    def _looked_again(self, scan: ScanAt, first: Alignment) -> tuple[Alignment, Verdict] | None:
-        """Take a second look from the guess, unless a search looks farther, or looks are vain."""
-        is_searching = self._recovery.step in (Step.AROUND, Step.GLOBALLY)
-        if is_searching or self._vain_looks >= VAIN_LOOKS:
-            return None
-        alignment = self._matcher.second_look(
-            first,
-            scan.points,
-            scan.guess,
-            scan.regularization,
-            convinces=lambda found: self._judged(scan, found).is_believed,
-        )
-        self._second_looks += alignment.looks > first.looks
-        verdict = self._judged(scan, alignment)
-        self._vain_looks += not verdict.is_believed
-        return (alignment, verdict) if verdict.is_believed else None
-
-    def _judged(self, scan: ScanAt, alignment: Alignment) -> Verdict:
-        return self._judge.judge(scan.stamp_s, alignment, scan.guess)
-
-    def _believe(self, scan: ScanAt, alignment: Alignment) -> None:
-        self._judge.believe(scan.stamp_s, alignment, scan.guess)
+    def _believe(self, scan: ScanAt, alignment: Alignment, stood_out: int) -> None:
+        self._judge.believe(scan.stamp_s, alignment, scan.guess, stood_out=stood_out)
         self._recovery.believed()
-        self._vain_looks = 0
+        self._looks.hope()
         if self._last_pose is not None:
             at = Believed(scan.stamp_s, alignment.T_map_sensor, scan.guess)
             self._last_pose.write(time.time(), at, self._is_activated)
@@ -221,9 +181,10 @@ class RobustTracking:
         likelihood = alignment.nearest_voxel_likelihood
         report.value("nearest_voxel_transformation_likelihood", likelihood)
         report.value("score_level", round(verdict.level, 4))
+        report.value("explained_score", round(alignment.explained_score, 4))
         report.value("share_of_points_in_map", round(alignment.share_in_map, 4))
         report.value("is_sure", verdict.is_sure)
-        report.value("second_looks", self._second_looks)
+        report.value("second_looks", self._looks.second_looks)
         if not verdict.is_believed:
             report.warn(verdict.why)
 
@@ -233,7 +194,3 @@ class RobustTracking:
             report.value("recovery_note", self._recovery.note)
         if self._recovery.step is not Step.TRACKING:
             report.note(f"recovery: {self._recovery.step.value}")
-
-
-def _is_near(T: Pose, other: Pose) -> bool:
-    return poses.distance_m(T, other) < OTHER_M and poses.angle_rad(T, other) < OTHER_RAD

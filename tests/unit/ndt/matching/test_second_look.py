@@ -118,6 +118,6 @@ def test_levels_of_a_second_look() -> None:
     assert replace(OPTIONS, coarse_levels=()).coarser_levels == ()
     assert replace(OPTIONS, coarse_levels=(4.0, 2.0)).second_look_levels == ()
     assert len(MAP.levels) == 3
-    assert len(MAP.first_levels) == 2
-    with pytest.raises(ManycoreError, match="coarse_levels: expected at most 3 with wide_levels"):
-        replace(OPTIONS, wide_levels=(16.0, 8.0, 4.0))
+    assert (MAP.first, MAP.scored, MAP.polishing) == (1, 2, 0)
+    with pytest.raises(ManycoreError, match="coarse_levels: expected at most 5 with wide_levels"):
+        replace(OPTIONS, wide_levels=(64.0, 32.0, 16.0, 8.0, 4.0))

@@ -169,7 +169,7 @@ def test_a_map_of_other_options_is_refused() -> None:
         ("trans_epsilon", 5.0),
         ("coarse_levels", (1.0,)),
         ("coarse_levels", (2.0, 3.0)),
-        ("coarse_levels", (5.0, 4.0, 3.0, 2.0)),
+        ("coarse_levels", (7.0, 6.0, 5.0, 4.0, 3.0, 2.0)),
     ],
 )
 def test_options_out_of_range_are_refused(name: str, value: Any) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from rmw_manycore_py.ndt import Alignment, MatcherOptions
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
-from rmw_manycore_py.ndt.trust.judge import WEAK_M, PoseJudge, Verdict
+from rmw_manycore_py.ndt.trust.judge import WEAK_DRIFT, WEAK_M, PoseJudge, Verdict
 from rmw_manycore_py.ndt.trust.motion import Believed, MotionModel
 
 pytestmark = pytest.mark.unit
@@ -85,6 +85,31 @@ def test_a_first_pose_must_fit_well_unless_nothing_can_search():
         assert judge.judge(0.0, aligned(at(0.0), 2.9, 0.9), at(0.0)).is_believed == is_believed
 
 
+def test_a_low_score_may_be_explained_also_of_a_first_pose():
+    judge = PoseJudge()
+    judge.level.map_changed(OWN_SCORE)
+    hidden = aligned(at(0.0), 1.8, 0.5)
+    assert "level" in judge.judge(0.0, hidden, at(0.0)).why
+    for share, is_believed in ((0.9, True), (0.86, False)):
+        explained = replace(hidden, explained_score=share * OWN_SCORE)
+        assert judge.judge(0.0, explained, at(0.0)).is_believed == is_believed
+    judge, stamp_s, x = driven()
+    explained = replace(aligned(at(x), 1.8), explained_score=0.9 * OWN_SCORE)
+    assert judge.judge(stamp_s, explained, at(x)).is_believed
+    elsewhere = replace(explained, T_map_sensor=at(x + 12.0))
+    assert "implausible" in judge.judge(stamp_s, elsewhere, at(x)).why
+
+
+def test_traffic_does_not_lower_the_level():
+    judge, stamp_s, x = driven()
+    before = judge.level.level
+    for _ in range(30):
+        explained = replace(aligned(at(x), 1.8), explained_score=OWN_SCORE)
+        judge.believe(stamp_s, explained, at(x))
+        stamp_s, x = stamp_s + PERIOD_S, x + SPEED_M_S * PERIOD_S
+    assert judge.level.level == before
+
+
 def test_only_a_search_may_replace_a_refused_first_pose():
     for searches in (True, False):
         judge = PoseJudge(searches=searches)
@@ -121,19 +146,36 @@ def test_guesses_carry_over_a_gap_unless_they_jump():
     judge, stamp_s, x = driven()
     later_s, on = stamp_s + 0.9, at(x + SPEED_M_S * 0.9)
     assert judge.judge(later_s, aligned(on), on).is_believed
-    assert "implausible" in judge.judge(later_s, aligned(on), at(x)).why
+    stayed = judge.judge(later_s, aligned(on), at(x))
+    assert stayed.is_believed
+    assert not stayed.is_sure
+    assert stayed.covariance(np.eye(6))[0, 0] > (0.5 * SPEED_M_S * 0.9) ** 2
     jumped = at(x + SPEED_M_S * 0.9 + 20.0)
     assert "implausible" in judge.judge(later_s, aligned(jumped), jumped).why
 
 
-def test_a_hand_that_turns_the_sensor_is_plausible():
+@pytest.mark.parametrize("period_s", [0.2, 0.5])
+def test_a_hand_that_turns_the_sensor_is_plausible(period_s):
     judge = PoseJudge()
     judge.level.map_changed(OWN_SCORE)
-    for scan, yaw in enumerate([0.0, 0.0, 0.8, 0.8, 0.0]):
+    for scan, yaw in enumerate([0.0, 0.0, 0.9, 0.9, 0.0]):
         T = at(0.4 * scan, 0.0, yaw)
-        verdict = judge.judge(0.5 * scan, aligned(T), T)
+        verdict = judge.judge(period_s * scan, aligned(T), T)
         assert verdict.is_believed, verdict.why
-        judge.believe(0.5 * scan, aligned(T), T)
+        judge.believe(period_s * scan, aligned(T), T)
+
+
+def test_a_verdict_knows_whether_only_the_score_is_in_doubt():
+    judge, stamp_s, x = driven()
+    for score, x_m, is_low, is_plausible in (
+        (2.0, x, True, True),
+        (2.0, x + 20.0, True, False),
+        (3.0, x + 20.0, False, False),
+    ):
+        verdict = judge.judge(stamp_s, aligned(at(x_m), score), at(x_m))
+        assert not verdict.is_believed
+        assert (verdict.is_score_low, verdict.is_plausible) == (is_low, is_plausible)
+    assert not judge.judge(stamp_s, aligned(at(x), 2.0, 0.1), at(x)).is_score_low
 
 
 def test_a_sudden_drop_and_points_outside_the_map_are_refused():
@@ -161,8 +203,37 @@ def test_the_covariance_is_wide_where_the_pose_is_unknown():
     judge, stamp_s, x = driven()
     tunnel = replace(aligned(at(x)), xy_spread_m2=np.diag([0.4, 0.01]))
     along = judge.judge(stamp_s, tunnel, at(x)).covariance(sure)
-    assert along[0, 0] == pytest.approx(WEAK_M**2, rel=0.01)
+    assert along[0, 0] == pytest.approx((WEAK_M + WEAK_DRIFT * 1.5) ** 2, rel=0.01)
     assert along[1, 1] == pytest.approx(0.02)
+
+
+def test_along_a_tunnel_the_covariance_grows_until_features_return():
+    judge, stamp_s, x = driven()
+    before_m = 0.0
+    for _ in range(100):
+        tunnel = replace(aligned(at(x - 0.4)), xy_spread_m2=np.diag([0.4, 0.01]))
+        verdict = judge.judge(stamp_s, tunnel, at(x))
+        assert verdict.corrected(tunnel.T_map_sensor)[0, 3] == pytest.approx(x)
+        assert verdict.along.deviation_m > before_m
+        before_m = verdict.along.deviation_m
+        judge.believe(stamp_s, replace(tunnel, T_map_sensor=at(x)), at(x))
+        stamp_s, x = stamp_s + PERIOD_S, x + SPEED_M_S * PERIOD_S
+    assert before_m == pytest.approx(WEAK_M + WEAK_DRIFT * 150.0, rel=0.1)
+    out = aligned(at(x - 7.0))
+    assert not judge.judge(stamp_s, out, at(x)).is_sure
+    assert judge.judge(stamp_s, out, at(x), stood_out=1).along.is_open
+    assert judge.judge(stamp_s, out, at(x), stood_out=2).along is None
+    judge.believe(stamp_s, out, at(x), stood_out=2)
+    on = at(x - 7.0 + SPEED_M_S * PERIOD_S)
+    assert judge.judge(stamp_s + PERIOD_S, aligned(on), on).is_sure
+
+
+def test_guesses_that_turn_around_have_jumped():
+    judge, stamp_s, x = driven()
+    around = at(x, yaw=np.pi)
+    assert judge.judge(stamp_s, aligned(at(x)), around).expected.by_guess is None
+    assert "implausible" in judge.judge(stamp_s, aligned(around), around).why
+    assert "implausible" in judge.judge(stamp_s + 2.0, aligned(around), around).why
 
 
 def test_the_motion_leads_along_the_arc_that_a_vehicle_turns_on():

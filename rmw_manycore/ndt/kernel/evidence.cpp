@@ -1,0 +1,197 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "ndt/kernel/evidence.hpp"
+
+#include <cmath>
+#include <unordered_map>
+#include <vector>
+
+#include "ndt/common/matrix.hpp"
+#include "ndt/kernel/pass.hpp"
+#include "ndt/kernel/point_scores.hpp"
+#include "ndt/map/grid.hpp"
+#include "ndt/map/table.hpp"
+
+namespace manycore::ndt {
+namespace {
+
+/// A ray steps through the map in parts of a voxel.
+constexpr double steps_per_voxel = 2;
+/// How far behind a surface a point has to lie, relative to the voxel size: rays that graze the
+/// ground end close to its plane.
+constexpr double behind_share = 0.5;
+/// A plane's largest inverse variance is nearly the trace; that of a pole half of it.
+constexpr double planar_share = 0.85;
+constexpr int power_iterations = 4;
+
+Vector3 times(const float * b, const Vector3 & x) {
+  return {
+    static_cast<double>(b[0]) * x[0] + static_cast<double>(b[1]) * x[1] +
+      static_cast<double>(b[2]) * x[2],
+    static_cast<double>(b[1]) * x[0] + static_cast<double>(b[3]) * x[1] +
+      static_cast<double>(b[4]) * x[2],
+    static_cast<double>(b[2]) * x[0] + static_cast<double>(b[4]) * x[1] +
+      static_cast<double>(b[5]) * x[2]};
+}
+
+Vector3 minus(const Vector3 & a, const Vector3 & b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+Vector3 mean_of(const VoxelLine & line) {
+  return {
+    static_cast<double>(line.mean_m[0]), static_cast<double>(line.mean_m[1]),
+    static_cast<double>(line.mean_m[2])};
+}
+
+int32_t cell_along(const MapHeader & map, double place_m, size_t axis) {
+  return static_cast<int32_t>(std::floor(place_m / map.voxel_size_m)) - map.first_cell[axis];
+}
+
+/// The voxel of the cell itself among those in range of it; null without one.
+const VoxelLine * own_voxel(const MapView & map, const Cell & cell) {
+  const MapHeader & header = *map.header;
+  uint32_t key = 0;
+  for (size_t i = 3; i-- > 0;) {
+    if (cell[i] < 0 || cell[i] >= header.cells[i]) {
+      return nullptr;
+    }
+    key = key * static_cast<uint32_t>(header.cells[i]) + static_cast<uint32_t>(cell[i]);
+  }
+  for (const uint32_t * line = map.lists + find_list(map, key); *line != 0; ++line) {
+    const VoxelLine & voxel = map.lines[*line];
+    bool is_own = true;
+    for (size_t i = 0; i < 3; ++i) {
+      is_own &= cell_along(header, static_cast<double>(voxel.mean_m[i]), i) == cell[i];
+    }
+    if (is_own) {
+      return &voxel;
+    }
+  }
+  return nullptr;
+}
+
+/// The lowest voxels of columns, each looked up once.
+class Columns {
+public:
+  explicit Columns(const MapView & map) : map_(map) {}
+
+  /// Height of the lowest voxel's mean, relative to the map's origin; NaN without one.
+  float lowest_m(int32_t x, int32_t y) {
+    const uint64_t key =
+      (static_cast<uint64_t>(static_cast<uint32_t>(x)) << 32) | static_cast<uint32_t>(y);
+    const auto [entry, is_new] = lowest_m_.try_emplace(key, std::nanf(""));
+    for (int32_t z = 0; is_new && std::isnan(entry->second) && z < map_.header->cells[2]; ++z) {
+      if (const VoxelLine * const voxel = own_voxel(map_, {x, y, z})) {
+        entry->second = voxel->mean_m[2];
+      }
+    }
+    return entry->second;
+  }
+
+  int known_around(int32_t x, int32_t y) {
+    int known = 0;
+    for (int32_t i = -1; i <= 1; ++i) {
+      for (int32_t j = -1; j <= 1; ++j) {
+        known += (i != 0 || j != 0) && !std::isnan(lowest_m(x + i, y + j)) ? 1 : 0;
+      }
+    }
+    return known;
+  }
+
+private:
+  const MapView & map_;
+  std::unordered_map<uint64_t, float> lowest_m_;
+};
+
+/// Whether a ray passes through the surface of a planar voxel to a place clearly behind it.
+bool passes(
+  const MapHeader & map, const VoxelLine & voxel, const Vector3 & from_m, const Vector3 & to_m) {
+  const float * const b = voxel.inverse_covariance;
+  const Vector3 mean = mean_of(voxel);
+  const Vector3 ray = minus(to_m, from_m);
+  const Vector3 bent = times(b, ray);
+  const double nearest = dot(bent, minus(mean, from_m)) / dot(bent, ray);
+  if (nearest <= 0 || nearest >= 1) {
+    return false;
+  }
+  Vector3 x = minus(from_m, mean);
+  for (size_t i = 0; i < 3; ++i) {
+    x[i] += nearest * ray[i];
+  }
+  if (dot(times(b, x), x) > 1) {
+    return false;
+  }
+  Vector3 normal{1, 0.7, 0.4};
+  double largest = 0;
+  for (int i = 0; i < power_iterations; ++i) {
+    normal = times(b, normal);
+    largest = std::sqrt(dot(normal, normal));
+    for (double & n : normal) {
+      n /= largest;
+    }
+  }
+  largest = dot(times(b, normal), normal);
+  if (largest < planar_share * static_cast<double>(b[0] + b[3] + b[5])) {
+    return false;
+  }
+  const double behind_m = dot(normal, minus(to_m, mean));
+  const double before_m = dot(normal, minus(from_m, mean));
+  return behind_m * before_m < 0 && std::abs(behind_m) > behind_share * map.voxel_size_m;
+}
+
+bool is_past_map(const MapView & map, const Vector3 & from_m, const Vector3 & to_m) {
+  const Vector3 ray = minus(to_m, from_m);
+  const auto steps =
+    static_cast<size_t>(std::sqrt(dot(ray, ray)) * steps_per_voxel / map.header->voxel_size_m);
+  const VoxelLine * last = nullptr;
+  for (size_t step = 1; step < steps; ++step) {
+    Cell cell;
+    for (size_t i = 0; i < 3; ++i) {
+      const double place_m =
+        from_m[i] + ray[i] * static_cast<double>(step) / static_cast<double>(steps);
+      cell[i] = cell_along(*map.header, place_m, i);
+    }
+    const VoxelLine * const voxel = own_voxel(map, cell);
+    if (voxel != nullptr && voxel != last && passes(*map.header, *voxel, from_m, to_m)) {
+      return true;
+    }
+    last = voxel;
+  }
+  return false;
+}
+
+}  // namespace
+
+void point_evidence(
+  const MapView & map, double outlier_ratio, const Pose6 & pose, const float * xyz_m, size_t count,
+  PointEvidence * evidence) {
+  std::vector<float> scores(count);
+  point_scores(map, outlier_ratio, pose, xyz_m, count, scores.data());
+  const Pose4x4 sensor_in_map = to_matrix(pose);
+  Vector3 from_m;
+  for (size_t i = 0; i < 3; ++i) {
+    from_m[i] = sensor_in_map[4 * i + 3] - map.header->origin_m[i];
+  }
+  Columns columns(map);
+  for (size_t point = 0; point < count; ++point) {
+    const float * const p = xyz_m + 3 * point;
+    Vector3 place_m = from_m;
+    for (size_t i = 0; i < 3; ++i) {
+      for (size_t j = 0; j < 3; ++j) {
+        place_m[i] += sensor_in_map[4 * i + j] * static_cast<double>(p[j]);
+      }
+    }
+    if (!is_finite(place_m)) {
+      evidence[point] = {std::nanf(""), std::nanf(""), 0, 0};
+      continue;
+    }
+    const int32_t x = cell_along(*map.header, place_m[0], 0);
+    const int32_t y = cell_along(*map.header, place_m[1], 1);
+    evidence[point] = {
+      scores[point], static_cast<float>(place_m[2]) - columns.lowest_m(x, y),
+      static_cast<float>(columns.known_around(x, y)),
+      is_past_map(map, from_m, place_m) ? 1.0F : 0.0F};
+  }
+}
+
+}  // namespace manycore::ndt

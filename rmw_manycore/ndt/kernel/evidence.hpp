@@ -1,0 +1,26 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "ndt/common/pose.hpp"
+#include "ndt/map/voxel_map.hpp"
+
+namespace manycore::ndt {
+
+/// What a map says about one point of a scan.
+struct PointEvidence {
+  float score;           ///< of the best voxel in range; NaN without one
+  float height_m;        ///< above the lowest voxel of the point's column; NaN where that is empty
+  float columns_around;  ///< columns with voxels among the eight around it
+  float is_past_map;     ///< 1 if the ray to the point passes through a mapped surface
+};
+static_assert(sizeof(PointEvidence) == 4 * sizeof(float));
+
+/// Writes the evidence for `count` points (x, y, z [m], sensor frame) at a pose. Runs point by
+/// point on the calling thread: pass a sample of a scan.
+void point_evidence(
+  const MapView & map, double outlier_ratio, const Pose6 & pose, const float * xyz_m, size_t count,
+  PointEvidence * evidence);
+
+}  // namespace manycore::ndt

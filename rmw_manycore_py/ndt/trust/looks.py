@@ -1,0 +1,127 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Aligns a scan, and again where the result is refused: at most ten times.
+
+```
+ from the guess ── refused ─► from where the motion leads ── refused ─► finest level alone
+   1                            up to 3                         if the score refuses: 1
+                                                            ── refused ─► second look
+                                                                           up to 5
+```
+
+The last two pause while a search looks farther, and after scans that they did not help. So beside
+load, refused scans do not keep the matcher from newer ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Pose, ScanPoints
+from rmw_manycore_py.ndt.matching.alignment import Alignment
+from rmw_manycore_py.ndt.matching.matcher import Matcher
+from rmw_manycore_py.ndt.trust.judge import PoseJudge, Verdict
+
+OTHER_M, OTHER_RAD = 0.3, np.radians(2.0)  # minimum distance of a start from another one
+VAIN_SCANS = 5  # in a row without help, after which no more is tried
+
+
+@dataclass(frozen=True)
+class ScanAt:
+    """A scan (N, 3) [m, base frame], its guess T_map_base and regularization pose."""
+
+    stamp_s: float
+    points: ScanPoints
+    guess: Pose
+    regularization: Pose | None
+
+
+Looked = tuple[Alignment, Verdict]
+
+
+class Looks:
+    """Looks at one scan after the other.
+
+    :ivar second_looks: number of second looks so far.
+    """
+
+    def __init__(self, matcher: Matcher, judge: PoseJudge) -> None:
+        self._matcher = matcher
+        self._judge = judge
+        self._vain = 0
+        self.second_looks = 0
+
+    def hope(self) -> None:
+        """Try all again: a pose was believed, or another one is at hand."""
+        self._vain = 0
+
+    def look(self, scan: ScanAt, *, is_searching: bool) -> Looked:
+        """Return the first result that is believed, else that of the guess.
+
+        :param is_searching: a search looks farther.
+        """
+        first = self._from(scan, scan.guess)
+        if first[1].is_believed:
+            return first
+        again = self._from_expectation(scan, first[1])
+        if again is None and not is_searching and self._vain < VAIN_SCANS:
+            again = self._closer(scan, first[1]) or self._second_look(scan, first)
+            self._vain += again is None
+        return again or first
+
+    def _from_expectation(self, scan: ScanAt, before: Verdict) -> Looked | None:
+        for start in _other_starts(scan.guess, before):
+            found = self._from(scan, start)
+            if found[1].is_believed:
+                return found
+        return None
+
+    def _closer(self, scan: ScanAt, before: Verdict) -> Looked | None:
+        """Align to the finest level alone, if it is the score that refuses the pose."""
+        if not before.is_score_low:
+            return None
+        expected = before.expected
+        found = self._from(scan, scan.guess if expected is None else expected.poses[0], closer=True)
+        return found if found[1].is_believed else None
+
+    def _second_look(self, scan: ScanAt, first: Looked) -> Looked | None:
+        if not self._judge.may_look_again(first[1]):
+            return None
+        alignment = self._matcher.second_look(
+            first[0],
+            scan.points,
+            scan.guess,
+            scan.regularization,
+            convinces=lambda found: self._judged(scan, found)[1].is_believed,
+        )
+        self.second_looks += alignment.looks > first[0].looks
+        found = self._judged(scan, alignment)
+        return found if found[1].is_believed else None
+
+    def _from(self, scan: ScanAt, start: Pose, *, closer: bool = False) -> Looked:
+        align = self._matcher.align_once
+        return self._judged(scan, align(scan.points, start, scan.regularization, is_close=closer))
+
+    def _judged(self, scan: ScanAt, alignment: Alignment) -> Looked:
+        """Judge an alignment; if nothing but its score refuses it, with what may explain that."""
+        verdict = self._judge.judge(scan.stamp_s, alignment, scan.guess)
+        if verdict.is_score_low and verdict.is_plausible:
+            alignment = self._matcher.explained(alignment, scan.points)
+            verdict = self._judge.judge(scan.stamp_s, alignment, scan.guess)
+        return alignment, verdict
+
+
+def _other_starts(guess: Pose, before: Verdict) -> Iterator[Pose]:
+    """Yield where the motion leads, as far as that differs from the guess."""
+    tried = [guess]
+    for start in [] if before.expected is None else before.expected.poses:
+        if not any(_is_near(start, other) for other in tried):
+            tried.append(start)
+            yield start
+
+
+def _is_near(T: Pose, other: Pose) -> bool:
+    return poses.distance_m(T, other) < OTHER_M and poses.angle_rad(T, other) < OTHER_RAD

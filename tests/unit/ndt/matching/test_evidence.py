@@ -1,0 +1,99 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What the map can contradict: vehicles and unmapped places say nothing about a pose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from rmw_manycore_py.bench.ndt import trust_variants
+from rmw_manycore_py.bench.ndt.trust_worlds import Drive, simulated
+from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelMap
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import scan_points
+from rmw_manycore_py.ndt.trust.judge import PoseJudge
+from support.samples.ndt_world import pose, street
+
+pytestmark = pytest.mark.unit
+
+DEFAULT = MatcherOptions(search="radius")
+WRONG = ((3.0, 0.7), (5.0, 0.35), (1.0, 3.1))  # m, rad
+
+
+@pytest.fixture(scope="module")
+def drive() -> Drive:
+    return simulated()["street 1"]()
+
+
+def test_points_are_told_apart():
+    voxel_map = VoxelMap.from_points(street(), DEFAULT)
+    at = pose(36.0, 0.0, 1.8, 0.0, 0.0, 0.0)
+    points = {
+        "on the ground": (20.0, 3.0, -1.8),
+        "on a wall": (0.0, 8.0, 1.0),
+        "in the road": (6.0, 0.0, -0.8),
+        "behind a wall": (1.75, 14.0, 2.1),
+        "beyond a gap": (12.0, 14.0, 1.0),
+        "nowhere": (np.nan, 0.0, 0.0),
+    }
+    sensor = np.array(list(points.values()), np.float32)
+    found = voxel_map.finest.point_evidence(sensor, at, DEFAULT.outlier_ratio)
+    evidence = dict(zip(points, found, strict=True))
+    is_past = {name for name, one in evidence.items() if one[3] > 0}
+    assert is_past == {"behind a wall"}
+    without_column = {name for name, one in evidence.items() if np.isnan(one[1])}
+    assert without_column == {"behind a wall", "beyond a gap", "nowhere"}
+    assert evidence["on the ground"][1] == pytest.approx(0.0, abs=0.1)
+    assert evidence["in the road"][1] == pytest.approx(1.0, abs=0.1)
+    assert evidence["in the road"][2] == 8
+    assert evidence["on a wall"][2] < 8
+    assert evidence["on a wall"][0] > 0.5 * voxel_map.own_likelihood
+
+
+@pytest.mark.parametrize("change", trust_variants.CHANGES.values(), ids=trust_variants.CHANGES)
+def test_right_first_poses_are_believed_within_one_scan_and_wrong_ones_refused(drive, change):
+    changed = change(drive)
+    voxel_map = VoxelMap.from_points(changed.map_points, changed.options)
+    matcher = SerialMatcher(changed.options)
+    matcher.set_map(voxel_map)
+    generator = np.random.default_rng(2)
+    for index in changed.tested[5::30]:
+        scan, truth = scan_points(changed.scan(index)), changed.poses[index]
+        guess = poses.perturbed(truth, 0.3, 0.03, generator)
+        right = matcher.align(scan, guess, only_pose=True)
+        assert poses.distance_m(right.T_map_sensor, truth) < 0.2
+        assert believed(matcher.explained(right, scan), voxel_map)
+        for wrong in wrong_results(matcher, scan, truth):
+            assert not believed(matcher.explained(wrong, scan), voxel_map)
+
+
+def wrong_results(
+    matcher: SerialMatcher, scan: np.ndarray, truth: np.ndarray
+) -> Iterator[Alignment]:
+    """Yield the alignments from guesses far off that did not come home."""
+    generator = np.random.default_rng(3)
+    for distance_m, angle_rad in WRONG:
+        guess = poses.perturbed(truth, distance_m, angle_rad, generator)
+        found = matcher.align_once(scan, guess, only_pose=True)
+        if poses.distance_m(found.T_map_sensor, truth) > 0.5:
+            yield found
+
+
+def believed(alignment: Alignment, voxel_map: VoxelMap) -> bool:
+    judge = PoseJudge()
+    judge.level.map_changed(voxel_map.own_likelihood)
+    return judge.judge(0.0, alignment, alignment.T_map_sensor).is_believed
+
+
+def test_unexplained_scores_of_vehicles_are_refused(drive):
+    """Without the evidence the same poses are refused: the world is hard enough."""
+    changed = trust_variants.with_vehicles(drive)
+    voxel_map = VoxelMap.from_points(changed.map_points, DEFAULT)
+    matcher = SerialMatcher(DEFAULT)
+    matcher.set_map(voxel_map)
+    scan = scan_points(changed.scan(20))
+    found = matcher.align_once(scan, changed.poses[20], only_pose=True, is_close=True)
+    assert not believed(found, voxel_map)
+    assert found.nearest_voxel_likelihood < 0.75 * voxel_map.own_likelihood

@@ -1,0 +1,63 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Finer levels refine a pose, and leave its scores and those of a sparse map alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Points
+from support.samples.ndt_world import errors, pose, scan_at, street
+
+pytestmark = pytest.mark.unit
+
+WORLD = street()
+PLAIN = MatcherOptions(polish_levels=())
+POLISHING = replace(PLAIN, polish_levels=(0.5,))
+
+
+def matcher(options: MatcherOptions, world: Points = WORLD) -> SerialMatcher:
+    made = SerialMatcher(options)
+    made.set_map(VoxelMap.from_points(world, options))
+    return made
+
+
+def test_poses_are_better_and_scores_those_of_the_voxel_size():
+    plain, polishing = matcher(PLAIN), matcher(POLISHING)
+    generator = np.random.default_rng(2)
+    before_m, after_m = [], []
+    for x in np.linspace(30, 50, 10):
+        true = pose(x, 0.5, 1.8, 0.01, -0.02, 0.3)
+        scan, guess = scan_at(WORLD, true), poses.perturbed(true, 0.5, 0.05, generator)
+        found = polishing.align(scan, guess)
+        before_m.append(errors(plain.align(scan, guess).T_map_sensor, true)[0])
+        after_m.append(errors(found.T_map_sensor, true)[0])
+        here = plain.score(scan, found.T_map_sensor)
+        assert found.nearest_voxel_likelihood == pytest.approx(here.nearest_voxel_likelihood)
+        assert polishing.score(scan, found.T_map_sensor) == here
+    assert np.median(after_m) < 0.7 * np.median(before_m)
+
+
+def test_where_the_map_is_too_sparse_for_finer_voxels_nothing_changes():
+    sparse = WORLD[::6]
+    true = pose(40, 0.5, 1.8, 0.01, -0.02, 0.3)
+    scan, guess = scan_at(WORLD, true), pose(40.4, 0.2, 1.9, 0, 0, 0.34)
+    found = [matcher(options, sparse).align(scan, guess) for options in (PLAIN, POLISHING)]
+    np.testing.assert_allclose(found[0].T_map_sensor, found[1].T_map_sensor, atol=0.005)
+
+
+def test_without_coarse_levels_nothing_is_polished():
+    alone = replace(POLISHING, coarse_levels=())
+    assert alone.polishing_levels == ()
+    assert VoxelMap.from_points(WORLD, alone).polishing == 0
+
+
+@pytest.mark.parametrize("levels", [(1.0,), (0.25, 0.5), (0.001,)])
+def test_levels_that_are_not_finer(levels):
+    with pytest.raises(ManycoreError, match="polish_levels"):
+        replace(PLAIN, polish_levels=levels)

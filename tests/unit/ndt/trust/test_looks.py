@@ -1,0 +1,96 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A refused scan is aligned again, but not too often: a newer one waits."""
+
+from __future__ import annotations
+
+import pytest
+
+from rmw_manycore_py.bench.ndt import trust_variants
+from rmw_manycore_py.bench.ndt.trust_worlds import Drive, simulated
+from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Pose, scan_points
+from rmw_manycore_py.ndt.trust.judge import PoseJudge
+from rmw_manycore_py.ndt.trust.looks import VAIN_SCANS, Looks, ScanAt
+
+pytestmark = pytest.mark.unit
+
+OPTIONS = MatcherOptions(search="radius")
+FIRST = 5  # scan
+
+
+@pytest.fixture(scope="module")
+def drive() -> Drive:
+    return simulated()["street 1"]()
+
+
+@pytest.fixture(scope="module")
+def voxel_map(drive) -> VoxelMap:
+    return VoxelMap.from_points(drive.map_points, OPTIONS)
+
+
+class Counted:
+    """Looks at scans of drives in a map; counts alignments."""
+
+    def __init__(self, voxel_map: VoxelMap) -> None:
+        self._judge = PoseJudge()
+        self._judge.level.map_changed(voxel_map.own_likelihood)
+        self._aligned: list[int] = []
+        matcher = SerialMatcher(OPTIONS)
+        matcher.set_map(voxel_map)
+        matcher.on_aligned = self._aligned.append
+        self.looks = Looks(matcher, self._judge)
+        self.is_believed = False
+
+    def look(
+        self, drive: Drive, index: int, guess: Pose | None = None, *, is_searching: bool = False
+    ) -> int:
+        """Return the number of alignments; continue from the result if it is believed."""
+        before, truth = len(self._aligned), drive.poses[index]
+        stamp_s, points = float(drive.stamps_s[index]), scan_points(drive.scan(index))
+        scan = ScanAt(stamp_s, points, truth if guess is None else guess, None)
+        alignment, verdict = self.looks.look(scan, is_searching=is_searching)
+        self.is_believed = verdict.is_believed
+        if self.is_believed:
+            assert poses.distance_m(alignment.T_map_sensor, truth) < 0.2
+            self._judge.believe(stamp_s, alignment, scan.guess)
+            self.looks.hope()
+        return len(self._aligned) - before
+
+
+@pytest.fixture
+def counted(drive, voxel_map) -> Counted:
+    """Return what has seen scans up to FIRST."""
+    found = Counted(voxel_map)
+    for index in range(FIRST - 5, FIRST):
+        found.look(drive, index)
+    return found
+
+
+def test_scans_that_fit_are_aligned_once(counted, drive):
+    assert [counted.look(drive, FIRST + index) for index in range(3)] == [1, 1, 1]
+
+
+def test_scans_that_fit_nowhere_are_soon_aligned_no_more_than_before(counted):
+    elsewhere = trust_variants.with_vehicles(simulated()["tunnel"]())
+    numbers = [counted.look(elsewhere, FIRST + index) for index in range(15)]
+    assert not counted.is_believed
+    assert max(numbers[:VAIN_SCANS]) in range(7, 11)
+    assert max(numbers[VAIN_SCANS:]) <= 4
+    counted.looks.hope()
+    assert counted.look(elsewhere, FIRST + 15, is_searching=True) <= 4
+
+
+def test_where_vehicles_hide_much_the_finest_level_alone_finds_the_pose(voxel_map, drive):
+    crowded, counted = trust_variants.with_vehicles(drive, 0.5), Counted(voxel_map)
+    believed = []
+    for index in range(FIRST, FIRST + 30):
+        alignments = counted.look(crowded, index)
+        believed += [alignments] if counted.is_believed else []
+    assert len(believed) >= 29
+    assert 2 in believed  # from the guess, and closer
+
+
+def test_motion_that_refuses_a_good_score_leads_to_no_closer_look(counted, drive):
+    assert counted.look(drive, FIRST, drive.poses[FIRST + 20]) <= 3
+    assert counted.is_believed
