@@ -293,6 +293,6 @@ TEST_CASE("activity reports the counters of endpoints and the length of their qu
   CHECK(rows[1].capacity == 10);
   EndpointInfo info;
   info.gid = subscription->gid();
-  CHECK(process->graph().activity_of({info}).at(0).queued == 2);
-  CHECK(process->graph().activity_of({EndpointInfo{}}).empty());
+  CHECK(process->graph().activity_of({info}, HeldMemory::skipped).at(0).queued == 2);
+  CHECK(process->graph().activity_of({EndpointInfo{}}, HeldMemory::skipped).empty());
 }

@@ -51,6 +51,9 @@ TEST_CASE("activity tells what readers hold: each chunk once") {
   const auto next = hold_next(*first);
   CHECK(held_bytes(f, other->gid()) == one);
   CHECK(held_bytes(f, first->gid()) == 2 * one);
+  const Graph & graph = f.process->graph();
+  CHECK(graph.activity_of(graph.endpoints(), HeldMemory::counted).at(0).held_bytes == one);
+  CHECK(graph.activity_of(graph.endpoints(), HeldMemory::skipped).at(0).held_bytes == 0);
   of_first.reset();
   CHECK(held_bytes(f, publisher->gid()) == one);
   of_second.reset();

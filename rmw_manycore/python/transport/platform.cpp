@@ -53,8 +53,7 @@ public:
   std::vector<NodeInfo> nodes() const { return view().graph.nodes(); }
 
   std::vector<EndpointRow> endpoints() const {
-    const std::vector<NodeInfo> nodes = view().graph.nodes();
-    return rows_of(view().graph, view().graph.endpoints(), nodes);
+    return rows_of(view().graph, view().graph.endpoints(), HeldMemory::counted);
   }
 
   uint64_t graph_generation() const { return view().graph.generation(); }

@@ -98,9 +98,13 @@ public:
     const std::string & type_hash) const {
     return std::make_unique<BoundSubscription>(member(), spec(topic, type, qos, role, type_hash));
   }
+  std::vector<EndpointRow> endpoints() const {
+    const Graph & graph = member()->graph();
+    return rows_of(graph, graph.endpoints(), HeldMemory::skipped);
+  }
   std::vector<EndpointRow> endpoints_of(const std::string & topic) const {
-    const std::vector<NodeInfo> nodes = member()->graph().nodes();
-    return rows_of(member()->graph(), member()->graph().endpoints_of(topic), nodes);
+    const Graph & graph = member()->graph();
+    return rows_of(graph, graph.endpoints_of(topic), HeldMemory::skipped);
   }
   uint64_t graph_generation() const { return member()->graph().generation(); }
   void watch_graph() { member()->waiters().watch_graph(common_word); }
@@ -165,6 +169,7 @@ void bind_process(nb::module_ & module) {
     .def(
       "subscription", &BoundProcess::subscription, nb::arg("topic"), nb::arg("type"),
       nb::arg("qos"), nb::arg("role") = "topic", nb::arg("type_hash") = "")
+    .def("endpoints", &BoundProcess::endpoints)
     .def("endpoints_of", &BoundProcess::endpoints_of, nb::arg("topic"))
     .def("graph_generation", &BoundProcess::graph_generation)
     .def("watch_graph", &BoundProcess::watch_graph)

@@ -112,14 +112,15 @@ void bind_endpoint_info(nb::module_ & module) {
 }  // namespace
 
 std::vector<EndpointRow> rows_of(
-  const Graph & graph, std::vector<EndpointInfo> endpoints, const std::vector<NodeInfo> & nodes) {
+  const Graph & graph, std::vector<EndpointInfo> endpoints, HeldMemory held) {
+  const std::vector<NodeInfo> nodes = graph.nodes();
   std::unordered_map<uint32_t, const NodeInfo *> by_handle;
   for (const NodeInfo & node : nodes) {
     by_handle.emplace(node.handle, &node);
   }
   const std::vector<uint64_t> matches = count_matches(endpoints);
   std::unordered_map<uint64_t, Activity> activities;
-  for (const Activity & activity : graph.activity_of(endpoints)) {
+  for (const Activity & activity : graph.activity_of(endpoints, held)) {
     activities.emplace(activity.endpoint, activity);
   }
   std::vector<EndpointRow> rows;

@@ -38,6 +38,6 @@ struct EndpointRow : EndpointInfo {
 /// Adds to each endpoint its counters, and name and namespace of its node; empty if the node is
 /// gone. Leaves out endpoints that have left meanwhile.
 std::vector<EndpointRow> rows_of(
-  const Graph & graph, std::vector<EndpointInfo> endpoints, const std::vector<NodeInfo> & nodes);
+  const Graph & graph, std::vector<EndpointInfo> endpoints, HeldMemory held);
 
 }  // namespace manycore::python

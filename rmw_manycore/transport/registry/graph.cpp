@@ -52,11 +52,11 @@ Activity activity_of(Registry & registry, const EndpointEntry & entry) {
   return activity;
 }
 
-auto look(Registry & registry) {
-  return [&registry](uint32_t, const EndpointEntry & entry) -> Seen {
+auto look(Registry & registry, HeldMemory held) {
+  return [&registry, held](uint32_t, const EndpointEntry & entry) -> Seen {
     return {
       activity_of(registry, entry), entry.kind, entry.topic_hash, entry.process.load(),
-      held_chunks(registry, entry)};
+      held == HeldMemory::counted ? held_chunks(registry, entry) : std::vector<HeldChunk>()};
   };
 }
 
@@ -161,16 +161,17 @@ std::vector<EndpointInfo> Graph::endpoints() const {
 }
 
 std::vector<Activity> Graph::activity() const {
-  return with_held(list_live<Seen>(registry_.endpoints(), look(registry_)));
+  return with_held(list_live<Seen>(registry_.endpoints(), look(registry_, HeldMemory::counted)));
 }
 
-std::vector<Activity> Graph::activity_of(const std::vector<EndpointInfo> & endpoints) const {
+std::vector<Activity> Graph::activity_of(
+  const std::vector<EndpointInfo> & endpoints, HeldMemory held) const {
   std::vector<Seen> all;
   for (const EndpointInfo & endpoint : endpoints) {
     const size_t before = all.size();
     append_live(
       registry_.endpoints(), static_cast<uint32_t>(endpoint_in(endpoint.gid)), all,
-      look(registry_));
+      look(registry_, held));
     if (all.size() > before && all.back().activity.endpoint != endpoint_in(endpoint.gid)) {
       all.pop_back();
     }

@@ -83,6 +83,9 @@ struct Activity {
 };
 static_assert(sizeof(Activity) == 112);
 
+/// Whether to look for what readers hold, at a system call for each publisher and chunk.
+enum class HeldMemory { counted, skipped };
+
 /// Consistent snapshots of the platform's processes, clusters, nodes and endpoints. Takes no
 /// registry lock. Thread-safe; not for use on the data path.
 class Graph {
@@ -98,8 +101,9 @@ public:
   /// Activity of all endpoints. Each row is consistent in itself; rows may be of different moments.
   std::vector<Activity> activity() const;
   /// Of these endpoints only, as far as they still exist; what subscriptions hold, of publishers
-  /// among them.
-  std::vector<Activity> activity_of(const std::vector<EndpointInfo> & endpoints) const;
+  /// among them, or 0.
+  std::vector<Activity> activity_of(
+    const std::vector<EndpointInfo> & endpoints, HeldMemory held) const;
   /// Deaths still recorded, oldest first.
   std::vector<Death> deaths() const;
   /// Endpoints of one topic or service; a constant-time lookup by name.

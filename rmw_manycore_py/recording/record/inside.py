@@ -20,7 +20,6 @@ class Inside:
         label = f"_manycore_record_{os.getpid()}"
         with translate_native_errors():
             self._process = _transport.Process(platform, own_cluster(), None, label)
-            self._view = _transport.Platform(platform)
         self._process.watch_graph()
         self._generation = self._process.graph_generation()
         self._subscriptions: list[_Subscription] = []
@@ -31,7 +30,7 @@ class Inside:
         """Return the publishers by topic."""
         found: dict[str, list[Offer]] = {}
         with translate_native_errors():
-            for endpoint in self._view.endpoints():
+            for endpoint in self._process.endpoints():
                 if (endpoint.role, endpoint.kind) == ("topic", "publisher"):
                     offer = Offer(endpoint.type, endpoint.type_hash, endpoint.qos)
                     found.setdefault(endpoint.topic, []).append(offer)
@@ -70,7 +69,6 @@ class Inside:
         """Leave the platform."""
         for subscription in list(self._subscriptions):
             subscription.close()
-        self._view.close()
         self._process.close()
 
 
