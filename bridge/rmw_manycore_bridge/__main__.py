@@ -16,12 +16,18 @@ def main(arguments: list[str]) -> int:
     # SIGINT ends the process quietly until its own handler is set, also during `import rclpy`.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     shorten_time_slice()  # before any thread starts: threads inherit it
+    from rmw_manycore_bridge.outside.interface import OutsideError
     from rmw_manycore_bridge.process import BridgeProcess
 
     plan, direction, lane, cluster, core = arguments
     way = DIRECTIONS[DIRECTIONS.index(direction)]
     place = (int(cluster), int(core))
-    return BridgeProcess(Plan.from_json(plan), way, int(lane), place).run()
+    try:
+        process = BridgeProcess(Plan.from_json(plan), way, int(lane), place)
+    except OutsideError as error:
+        print(error, file=sys.stderr)
+        return 1
+    return process.run()
 
 
 if __name__ == "__main__":

@@ -32,7 +32,6 @@ class Inside(Loop):
         cluster, core_number = core
         self.process = _transport.Process(plan.platform, cluster, core_number, name)
         self.process.watch_graph()
-        self._view = _transport.Platform(plan.platform)
         self.readers: list[InsideReader] = []
         self._changed = changed
         self._generation = self.process.graph_generation()
@@ -47,15 +46,24 @@ class Inside(Loop):
 
     def published(self, wanted: Callable[[str], bool]) -> dict[str, frozenset[str]]:
         """Return the types published by others than the bridge, by topic name."""
-        found: dict[str, set[str]] = {}
-        for endpoint in self._view.endpoints():
-            if self._is_of_others(endpoint, "topic", "publisher") and wanted(endpoint.topic):
-                found.setdefault(endpoint.topic, set()).add(endpoint.type)
-        return {name: frozenset(types) for name, types in found.items()}
+        return self._types("topic", "publisher", wanted)
+
+    def served(self, wanted: Callable[[str], bool]) -> dict[str, frozenset[str]]:
+        """Return the types of services with a server that is not the bridge's, by name."""
+        return self._types("request", "subscription", wanted)
 
     def servers(self, service: str) -> list[EndpointInfo]:
         """Return the servers of a service, except the bridge's."""
         return self._endpoints(service, "request", "subscription")
+
+    def _types(
+        self, role: EndpointRole, kind: EndpointKind, wanted: Callable[[str], bool]
+    ) -> dict[str, frozenset[str]]:
+        found: dict[str, set[str]] = {}
+        for endpoint in self.process.endpoints():
+            if self._is_of_others(endpoint, role, kind) and wanted(endpoint.topic):
+                found.setdefault(endpoint.topic, set()).add(endpoint.type)
+        return {name: frozenset(types) for name, types in found.items()}
 
     def _endpoints(self, name: str, role: EndpointRole, kind: EndpointKind) -> list[EndpointInfo]:
         return [
@@ -90,5 +98,4 @@ class Inside(Loop):
     def close(self) -> None:
         """Leave the platform, after the movers have destroyed their endpoints."""
         self.readers.clear()
-        self._view.close()
         self.process.close()

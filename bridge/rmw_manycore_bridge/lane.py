@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 from rmw_manycore_bridge.balance import Balance, Load, Move
 from rmw_manycore_bridge.lanes import LaneTable
 from rmw_manycore_bridge.place import Place
-from rmw_manycore_bridge.status import topic_loads
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import Direction
 
@@ -62,6 +61,8 @@ class Lanes:
             if table.shares[self._move.index].owner != self._move.heir:
                 self._rests_until_s[self._move.index] = time.monotonic() + REST_S
             self._move = None
+        from rmw_manycore_bridge.status import topic_loads  # not loaded with a single lane
+
         found = topic_loads(self._plan.platform, self._stem)
         move = self._balance.look(self._loads(table, found), found)
         if move is not None:

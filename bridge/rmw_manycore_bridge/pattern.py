@@ -1,12 +1,11 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Route for all topics whose names match a pattern; each topic gets a route of its own."""
+"""Route for all topics or services whose names match a pattern; each gets a route of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Protocol
 
 from rmw_manycore_bridge.counters import (
     CounterFile,
@@ -26,16 +25,13 @@ MAX_TOPICS = 512  # per pattern; each costs a file and endpoints on both sides
 Types = frozenset[str]
 
 
-class Source(Protocol):
-    """Side on which a pattern's topics are published."""
-
-    def published(self, wanted: Callable[[str], bool]) -> Mapping[str, Types]:
-        """Return the types published by others than the bridge, by topic name."""
+# Returns the types that others than the bridge publish or serve, by wanted name.
+Find = Callable[[Callable[[str], bool]], Mapping[str, Types]]
 
 
 @dataclass
 class _Member:
-    """A matching topic; it has no mover if its route cannot work."""
+    """A matching topic or service; it has no mover if its route cannot work."""
 
     types: Types
     slot: int
@@ -50,23 +46,28 @@ class Pattern(Mover):
         self,
         plan: Plan,
         sides: Sides,
-        source: Source,
+        find: Find,
         make: Callable[[Sides], Mover],
         before: Mapping[RouteKey, LastNumbers],  # forwarded by a killed process
     ) -> None:
         super().__init__(sides.fail)
         self._plan, self._sides, self._passed_before = plan, sides, before
-        self._source, self._make = source, make
+        self._find, self._make = find, make
         self._members: dict[str, _Member] = {}
         self._is_full = False
         route = sides.route
         inward = route.direction == "inward"
         self._pattern = route.outside if inward else route.inside
         # Explicit routes take precedence, and of two matching patterns the first.
-        beside = [other for other in plan.topics(route.direction) if other.domain == route.domain]
+        single = plan.topics if route.kind == "topic" else plan.services
+        beside = [other for other in single(route.direction) if other.domain == route.domain]
         self._taken = {other.outside if inward else other.inside for other in beside}
         patterns = plan.patterns(route.direction)
-        earlier = [p for p in patterns[: patterns.index(route)] if p.domain == route.domain]
+        earlier = [
+            other
+            for other in patterns[: patterns.index(route)]
+            if (other.domain, other.kind) == (route.domain, route.kind)
+        ]
         self._before = [p.outside if inward else p.inside for p in earlier]
 
     @property
@@ -76,7 +77,7 @@ class Pattern(Mover):
 
     def reconcile(self) -> None:
         """Add new topics, remove those whose type has changed, reconcile the others."""
-        found = self._source.published(self._is_wanted)
+        found = self._find(self._is_wanted)
         for name, types in found.items():
             member = self._members.get(name)
             if member is not None and member.types != types:
@@ -86,7 +87,7 @@ class Pattern(Mover):
         for mover in self._movers():
             mover.try_to_reconcile()
         state = "forwarding" if any(name in found for name in self._members) else "waiting"
-        self._sides.row.set_state(state, f"topics: {len(found)}")
+        self._sides.row.set_state(state, f"{self._sides.route.kind}s: {len(found)}")
 
     def expire(self, now_s: float) -> None:
         """Expire the topics that are due."""
@@ -117,7 +118,7 @@ class Pattern(Mover):
             return True
         if not self._is_full:
             self._is_full = True
-            self._sides.say(f"more than {MAX_TOPICS} topics match; the others are not bridged")
+            self._sides.say(f"more than {MAX_TOPICS} names match; the others are not bridged")
         return False
 
     def _begin(self, name: str, types: Types) -> _Member:

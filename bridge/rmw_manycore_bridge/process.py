@@ -3,43 +3,39 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import re
 import select
-import socket
 import sys
-from collections.abc import Iterable
+import zlib
+from collections.abc import Callable, Iterable
 from functools import partial
+from importlib import import_module
 
 from rmw_manycore_bridge.counters import CounterFile, status_path, take_pattern_files
 from rmw_manycore_bridge.engines import load_engine
 from rmw_manycore_bridge.inside import NODE_PREFIX, Inside
 from rmw_manycore_bridge.lane import Lanes
-from rmw_manycore_bridge.outside.interface import Outside
+from rmw_manycore_bridge.outside.interface import Joining, Outside
 from rmw_manycore_bridge.outside.loop import Loop, Mover
-from rmw_manycore_bridge.pattern import Pattern
 from rmw_manycore_bridge.place import Place
-from rmw_manycore_bridge.service_inward import InwardService
-from rmw_manycore_bridge.service_outward import OutwardService
 from rmw_manycore_bridge.sides import OwnPublishers, Sides
-from rmw_manycore_bridge.topic_inward import InwardTopic
-from rmw_manycore_bridge.topic_outward import OutwardTopic
 from rmw_manycore_py.process.readiness import report_ready
 from rmw_manycore_py.process.signals import signal_inbox
 from rmw_manycore_py.routes.plan import Plan
-from rmw_manycore_py.routes.route import Direction
+from rmw_manycore_py.routes.route import Direction, Route
 
 
 class BridgeProcess:
     """Runs until it is stopped or one of its threads fails."""
 
     def __init__(self, plan: Plan, direction: Direction, lane: int, core: tuple[int, int]) -> None:
-        services = [route for route in plan.of(direction, lane) if route.kind == "service"]
-        patterns = [route for route in plan.of(direction, lane) if route.is_pattern]
+        of_lane = plan.of(direction, lane)
+        services = [route for route in plan.services(direction) if route in of_lane]
+        patterns = [route for route in of_lane if route.is_pattern]
         routes = [*plan.topics(direction), *services, *patterns]
         stem = plan.outside.stem(direction)
-        node_name = f"{node_stem(plan.platform)}_{direction}{lane or ''}"
+        node_name = f"{node_stem(plan)}_{direction}{lane or ''}"
         self._plan = plan
         self._failed = os.eventfd(0)  # readable after a thread has failed
         self._inside = Inside(plan, core, f"{NODE_PREFIX}{stem}{lane or ''}", self._graphs_changed)
@@ -51,7 +47,9 @@ class BridgeProcess:
         counters = CounterFile.create(path, routes)
         own = OwnPublishers(plan)
         self._outsides = {
-            domain: engine.open(plan.outside, domain, node_name, self._graphs_changed, own.is_noted)
+            domain: engine.open(
+                Joining(plan, direction, domain, node_name, self._graphs_changed, own.is_noted)
+            )
             for domain in sorted({route.domain for route in routes})
         }
         self._loops: list[Loop] = [self._inside, *self._outsides.values()]
@@ -71,19 +69,21 @@ class BridgeProcess:
             loop.movers.append(mover)
 
     def _mover(self, sides: Sides, index: int) -> tuple[Mover, Loop]:
-        inward = sides.route.direction == "inward"
-        if sides.route.kind == "service":
-            service = InwardService(sides) if inward else OutwardService(sides)
-            return service, sides.outside
-        source: Outside | Inside = sides.outside if inward else self._inside
-        make = InwardTopic if inward else OutwardTopic
-        if sides.route.is_pattern:
-            return Pattern(
-                *(self._plan, sides, source),
-                lambda one: make(one, Place(lane=one.route.lane)),
-                self._before,
-            ), source
-        return make(sides, self._lanes.place(index)), source
+        route = sides.route
+        inward, is_service = route.direction == "inward", route.kind == "service"
+        # Where publishers or servers are.
+        source: Outside | Inside = sides.outside if inward != is_service else self._inside
+        loop = sides.outside if is_service else source
+        make = mover_class(route)
+        if is_service:
+            find, make_one = source.served, make
+        else:
+            find, make_one = source.published, lambda one: make(one, Place(lane=one.route.lane))
+        if route.is_pattern:
+            from rmw_manycore_bridge.pattern import Pattern
+
+            return Pattern(self._plan, sides, find, make_one, self._before), loop
+        return (make(sides) if is_service else make(sides, self._lanes.place(index))), loop
 
     def _graphs_changed(self) -> None:
         for loop in self._loops:
@@ -112,6 +112,14 @@ class BridgeProcess:
             return _report(self._loops)
 
 
+def mover_class(route: Route) -> Callable[..., Mover]:
+    """Return the class that forwards a route; processes load what they use, to be up soon."""
+    way, kind = route.direction, route.kind
+    module = import_module(f"rmw_manycore_bridge.{kind}_{way}")
+    found: Callable[..., Mover] = getattr(module, f"{way.title()}{kind.title()}")
+    return found
+
+
 def _report(loops: Iterable[Loop]) -> int:
     failures = [(loop.name, loop.failure) for loop in loops if loop.failure is not None]
     for name, failure in failures:
@@ -119,11 +127,13 @@ def _report(loops: Iterable[Loop]) -> int:
     return 1 if failures else 0
 
 
-def node_stem(platform: str) -> str:
+def node_stem(plan: Plan) -> str:
     """Return the node name prefix of a platform's bridge, the same at each start.
 
-    It differs between two platforms of one name on different hosts.
+    It differs between two platforms of one name on different hosts, and between hosts of one.
     """
-    text = f"{socket.gethostname()}/{os.getuid()}/{platform}"
-    readable = re.sub(r"\W", "_", platform, flags=re.ASCII).strip("_")
-    return f"manycore_bridge_{readable}_{hashlib.blake2s(text.encode(), digest_size=4).hexdigest()}"
+    if plan.outside.host:
+        return f"manycore_host_{plan.outside.host}"
+    text = f"{os.uname().nodename}/{os.getuid()}/{plan.platform}"
+    readable = re.sub(r"\W", "_", plan.platform, flags=re.ASCII).strip("_")
+    return f"manycore_bridge_{readable}_{zlib.crc32(text.encode()):08x}"

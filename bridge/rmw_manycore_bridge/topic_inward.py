@@ -53,6 +53,7 @@ class InwardTopic(Topic):
             self._listen(max((e.qos.depth for e in listeners), default=1))
         else:
             self.stop_listening()
+            self._gaps = Gaps(self._sides.row)  # what nobody takes is not lost
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
     def _appear(self, offer: Qos) -> bool:
@@ -74,7 +75,7 @@ class InwardTopic(Topic):
         assert self._offer is not None
         request = request_for(self._offer, depth)
         self._subscription = self._sides.outside.subscribe(self._sides.route, request)
-        self._depth, self._gaps = request.depth, Gaps(self._sides.row)
+        self._depth = request.depth
         self.resume()
 
     def stop_listening(self) -> None:

@@ -8,8 +8,9 @@ from typing import Literal
 
 from rmw_manycore_py.routes.route import Direction
 
+# What a mapfile can name; `hosts` joins the parts of a platform that has several hosts.
 EngineName = Literal["fastdds", "zenoh"]
-ENGINES: tuple[EngineName, ...] = ("fastdds", "zenoh")
+LinkName = Literal["hosts"]
 _DEFAULT: EngineName = "fastdds"
 
 
@@ -18,10 +19,19 @@ class OutsideSettings:
     """The outside of one bridge; a platform has at most one bridge of each engine.
 
     :ivar connect: locators of zenoh routers or peers, as tcp/localhost:7447.
+    :ivar listen: of `hosts`, the locator at which this host listens.
+    :ivar host: of `hosts`, the name of this one.
     """
 
-    engine: EngineName = _DEFAULT
+    engine: EngineName | LinkName = _DEFAULT
     connect: tuple[str, ...] = ()
+    listen: str = ""
+    host: str = ""
+
+    @property
+    def title(self) -> str:
+        """What its processes are called."""
+        return self.engine if self.engine == "hosts" else "bridge"
 
     def stem(self, direction: Direction) -> str:
         """Return what the names of files and nodes of its processes have in common.

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field
 
 from rmw_manycore_py.routes.outside import OutsideSettings
@@ -28,14 +29,18 @@ class Plan:
 
     def topics(self, direction: Direction) -> tuple[Route, ...]:
         """Return the topics of all lanes; they may move between lanes."""
-        return tuple(r for r in self._topics(direction) if not r.is_pattern)
+        return tuple(r for r in self._single(direction) if r.kind == "topic")
 
     def patterns(self, direction: Direction) -> tuple[Route, ...]:
-        """Return the patterns; their topics stay in the lane of the pattern."""
-        return tuple(r for r in self._topics(direction) if r.is_pattern)
+        """Return the patterns; what fits one stays in its lane."""
+        return tuple(r for r in self.routes if r.direction == direction and r.is_pattern)
 
-    def _topics(self, direction: Direction) -> tuple[Route, ...]:
-        return tuple(r for r in self.routes if (r.kind, r.direction) == ("topic", direction))
+    def services(self, direction: Direction) -> tuple[Route, ...]:
+        """Return the services of all lanes."""
+        return tuple(r for r in self._single(direction) if r.kind == "service")
+
+    def _single(self, direction: Direction) -> Iterator[Route]:
+        return (r for r in self.routes if r.direction == direction and not r.is_pattern)
 
     def to_json(self) -> str:
         """Return the plan as a single command-line argument."""

@@ -15,7 +15,7 @@ from rmw_manycore_py.routes.plan import Plan
 from support import IS_MANYCORE, wait_until
 from support.nodes.bridging import STRING, ZenohBridge
 from support.nodes.ros import announce, peer_node, spin_until, type_of
-from support.nodes.speakers import hear, qos, say
+from support.nodes.speakers import flood, hear, qos, say
 from support.nodes.zenoh_peers import (
     hear_latched,
     locator,
@@ -206,16 +206,6 @@ def test_a_process_comes_up_before_its_router(zenoh) -> None:
     zenoh.inside(say, "/chat", {}, 0.05)
     zenoh.start_router()
     zenoh.outside(sdk_hear, "/chat").wait_for("^heard again")
-
-
-def flood(topic: str) -> None:
-    """Publish much more than a stopped subscriber's buffers hold."""
-    with peer_node("flooder") as node:
-        message = type_of(STRING)(data="x" * 200_000)
-        publisher = node.create_publisher(type_of(STRING), topic, qos({}))
-        node.create_timer(0.005, lambda: publisher.publish(message))
-        announce("flooding")
-        spin_until(node, lambda: False, 1e6)
 
 
 def test_a_peer_that_does_not_read_costs_counted_messages(zenoh) -> None:

@@ -15,9 +15,8 @@ from rmw_manycore_bridge.fastdds.services import DdsClient, DdsServer
 from rmw_manycore_bridge.fastdds.topics import DdsPublisher, DdsSubscription
 from rmw_manycore_bridge.fastdds.transports import NOTICE, avoid_shared_memory
 from rmw_manycore_bridge.outside import types
-from rmw_manycore_bridge.outside.interface import Endpoint, Outside
+from rmw_manycore_bridge.outside.interface import Endpoint, Joining, Outside
 from rmw_manycore_py.native._transport import Qos
-from rmw_manycore_py.routes.outside import OutsideSettings
 from rmw_manycore_py.routes.route import Route
 
 _NO_NETWORK = "no network interface is up: nothing is bridged; run 'ip link set lo up' and restart"
@@ -32,16 +31,10 @@ class FastDds(Outside):
         self.readers = domain.readers
 
     @classmethod
-    def open(
-        cls,
-        _: OutsideSettings,
-        domain: int,
-        name: str,
-        changed: Callable[[], None],
-        is_own: Callable[[bytes], bool],
-    ) -> FastDds:
+    def open(cls, joining: Joining) -> FastDds:
         """Join a domain."""
-        return cls(domain, Domain(domain, name, changed, is_own))
+        made = Domain(joining.domain, joining.name, joining.changed, joining.is_own)
+        return cls(joining.domain, made)
 
     @classmethod
     def prepare(cls, scratch: Path, replaces: bool) -> None:

@@ -11,8 +11,8 @@ from typing import Any, Protocol
 
 from rmw_manycore_bridge.outside.loop import Loop
 from rmw_manycore_py.native._transport import Qos
-from rmw_manycore_py.routes.outside import OutsideSettings
-from rmw_manycore_py.routes.route import Route
+from rmw_manycore_py.routes.plan import Plan
+from rmw_manycore_py.routes.route import Direction, Route
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,24 @@ class Answer:
     number: int
     data: bytes | None
     reason: str = ""
+
+
+@dataclass(frozen=True)
+class Joining:
+    """How a process of the bridge joins a domain.
+
+    :ivar name: name of its node there; those of the bridge's other processes have the same stem, up
+        to the last underscore.
+    :ivar changed: called after each change of the graph.
+    :ivar is_own: whether a publisher with this gid is of this bridge.
+    """
+
+    plan: Plan
+    direction: Direction
+    domain: int
+    name: str
+    changed: Callable[[], None]
+    is_own: Callable[[bytes], bool]
 
 
 class OutsideError(RuntimeError):
@@ -133,21 +151,8 @@ class Outside(Loop):
 
     @classmethod
     @abstractmethod
-    def open(
-        cls,
-        settings: OutsideSettings,
-        domain: int,
-        name: str,
-        changed: Callable[[], None],
-        is_own: Callable[[bytes], bool],
-    ) -> Outside:
-        """Join a domain.
-
-        :param name: name of the bridge's node there; those of its other processes have the same
-            stem, up to the last underscore.
-        :param changed: called after each change of the graph.
-        :param is_own: whether a publisher with this gid is of this bridge.
-        """
+    def open(cls, joining: Joining) -> Outside:
+        """Join a domain."""
 
     @classmethod
     @abstractmethod
@@ -172,6 +177,13 @@ class Outside(Loop):
     @abstractmethod
     def published(self, wanted: Callable[[str], bool]) -> Mapping[str, frozenset[str]]:
         """Return the types published by others than this bridge, by topic name."""
+
+    def served(self, wanted: Callable[[str], bool]) -> Mapping[str, frozenset[str]]:
+        """Return the types of services served by others than this bridge, by name.
+
+        Only between hosts are there patterns of services.
+        """
+        raise NotImplementedError
 
     @abstractmethod
     def server_types(self, service: str) -> list[str]:

@@ -46,6 +46,8 @@ class Loop(ABC):
         self._stale = True
         self._stopping = False
         self._failed: Callable[[], None] = _ignore
+        # Held while movers run: an engine may run one in a thread of its own.
+        self._moving = threading.Lock()
         self._thread = threading.Thread(target=self._run, name=name)
 
     def on_failure(self, call: Callable[[], None]) -> None:
@@ -69,8 +71,9 @@ class Loop(ABC):
 
     def close_movers(self) -> None:
         """Destroy all endpoints of the movers, while both sides still exist."""
-        for mover in self.movers:
-            mover.close()
+        with self._moving:
+            for mover in self.movers:
+                mover.close()
 
     @abstractmethod
     def wake(self) -> None:
@@ -87,14 +90,19 @@ class Loop(ABC):
     def _run(self) -> None:
         try:
             while not self._stopping:
-                if self._stale:
-                    self._stale = False
-                    for mover in self.movers:
-                        mover.try_to_reconcile()
-                self.turn(self._expire())
+                with self._moving:
+                    self._reconcile()
+                    timeout_s = self._expire()
+                self.turn(timeout_s)
         except BaseException as error:
             self.failure = error
             self._failed()
+
+    def _reconcile(self) -> None:
+        if self._stale:
+            self._stale = False
+            for mover in self.movers:
+                mover.try_to_reconcile()
 
     def _expire(self) -> float | None:
         """Return the seconds until the next deadline; None if there is none."""

@@ -7,9 +7,12 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from threading import Event
+from typing import Protocol
+
+import zenoh
 
 from rmw_manycore_bridge.outside import types
-from rmw_manycore_bridge.outside.interface import Endpoint, Outside
+from rmw_manycore_bridge.outside.interface import Endpoint, Joining, Outside
 from rmw_manycore_bridge.zenoh import qos as qos_text
 from rmw_manycore_bridge.zenoh.connections import Connections
 from rmw_manycore_bridge.zenoh.graph import Declared, Graph
@@ -18,39 +21,45 @@ from rmw_manycore_bridge.zenoh.services import ZenohClient, ZenohServer
 from rmw_manycore_bridge.zenoh.session import open_session
 from rmw_manycore_bridge.zenoh.topics import ZenohPublisher, ZenohSubscription
 from rmw_manycore_py.native._transport import Qos
-from rmw_manycore_py.routes.outside import OutsideSettings
 from rmw_manycore_py.routes.route import Route
 
 _SHOWN_DIGITS = 19  # of a hash in a reason: RIHS01_ and 12 digits
 
 
+class Watch(Protocol):
+    """Watches a session until it is closed."""
+
+    def close(self) -> None:
+        """Watch no more."""
+
+
 class Zenoh(Outside):
     """Thread that passes on what zenoh's own threads have received."""
 
-    def __init__(
-        self, connect: tuple[str, ...], domain: int, node: str, changed: Callable[[], None]
-    ) -> None:
+    def __init__(self, joining: Joining) -> None:
+        domain = joining.domain
         super().__init__(f"zenoh domain {domain}")
-        self._domain, self._changed = domain, changed
-        self._session = open_session(connect)
+        self._domain, self._changed = domain, joining.changed
+        self._session = self._open_session(joining)
         self._ready = Event()
         self._is_changed = False
+        self._error: BaseException | None = None  # of a thread of zenoh
         # Subscriptions that look for publishers without tokens, by topic inside and outside.
         self._scouts: dict[tuple[str, str], ZenohSubscription] = {}
-        self._graph = Graph(self._session, domain, node, self._note_change)
-        self._connections = Connections(self._session, connect, self._graph)
+        self._graph = Graph(self._session, domain, joining.name, self._note_change)
+        self._connections = self._watch(joining, self._graph)
 
     @classmethod
-    def open(
-        cls,
-        settings: OutsideSettings,
-        domain: int,
-        name: str,
-        changed: Callable[[], None],
-        _: Callable[[bytes], bool],
-    ) -> Zenoh:
+    def open(cls, joining: Joining) -> Zenoh:
         """Join a domain; without a router, it begins once there is one."""
-        return cls(settings.connect, domain, name, changed)
+        return cls(joining)
+
+    def _open_session(self, joining: Joining) -> zenoh.Session:
+        return open_session(joining.plan.outside.connect)
+
+    def _watch(self, joining: Joining, graph: Graph) -> Watch:
+        """Watch the session's connections."""
+        return Connections(self._session, joining.plan.outside.connect, graph)
 
     @classmethod
     def prepare(cls, scratch: Path, replaces: bool) -> None:
@@ -81,8 +90,15 @@ class Zenoh(Outside):
 
     def published(self, wanted: Callable[[str], bool]) -> Mapping[str, frozenset[str]]:
         """Return the types published by others than this bridge, by topic name."""
+        return self._types("MP", wanted)
+
+    def served(self, wanted: Callable[[str], bool]) -> Mapping[str, frozenset[str]]:
+        """Return the types of services served by others than this bridge, by name."""
+        return self._types("SS", wanted)
+
+    def _types(self, kind: Kind, wanted: Callable[[str], bool]) -> Mapping[str, frozenset[str]]:
         found: dict[str, set[str]] = {}
-        for token in self._graph.endpoints("MP"):
+        for token in self._graph.endpoints(kind):
             if wanted(token.name):
                 found.setdefault(token.name, set()).add(self._type_of(token))
         return {name: frozenset(kinds) for name, kinds in found.items()}
@@ -100,13 +116,12 @@ class Zenoh(Outside):
             made.close()  # it has no history
             made = None
         if made is None:
-            made = ZenohSubscription(self._key(route), self._ready.set)
+            made = ZenohSubscription(self._key(route), self._forward)
             made.keep(qos)
             made.declare(self._session, self._key(route), qos)
         else:
             made.keep(qos)
-        made.appear(self._declared("MS", route, qos), self._ready.set)
-        self._ready.set()  # messages may wait already
+        made.appear(self._declared("MS", route, qos), self._forward)
         return made
 
     def publish(self, route: Route, qos: Qos) -> ZenohPublisher:
@@ -133,16 +148,35 @@ class Zenoh(Outside):
 
     def turn(self, timeout_s: float | None) -> None:
         """Block until something changes, then forward what has arrived."""
-        self._ready.wait(timeout_s)
+        if not any(reader.has_data() for reader in self.readers):
+            self._ready.wait(timeout_s)
         self._ready.clear()
+        if self._error is not None:
+            raise self._error
         if self._is_changed:
             self._is_changed = False
             self._changed()
-        for reader, pump in list(self.readers.items()):
-            if reader.has_data():
+        with self._moving:
+            for reader, pump in list(self.readers.items()):
+                if reader.has_data():
+                    pump()
+
+    def _forward(self, subscription: ZenohSubscription) -> None:
+        """Forward messages in the thread of zenoh that received them; leave them if others run."""
+        if not self._moving.acquire(blocking=False):
+            self._ready.set()
+            return
+        try:
+            pump = self.readers.get(subscription)
+            if pump is not None and not self._stopping:
                 pump()
-            if reader.has_data():
-                self._ready.set()
+        except BaseException as error:  # it ends the loop, as in the loop's own thread
+            self._error = error
+            self._ready.set()
+        finally:
+            self._moving.release()
+        if subscription.has_data():
+            self._ready.set()
 
     def close(self) -> None:
         """Leave the domain."""
@@ -155,7 +189,11 @@ class Zenoh(Outside):
     def _scout(self, route: Route) -> ZenohSubscription:
         """Return a subscription that looks for publishers without a token."""
         made = ZenohSubscription(
-            *(self._key(route), self._note_change, partial(self._scouts.pop, _name(route), None)),
+            *(
+                self._key(route),
+                lambda _: self._note_change(),
+                partial(self._scouts.pop, _name(route), None),
+            ),
         )
         made.declare(self._session, any_key(self._domain, route.outside), Qos())
         return made

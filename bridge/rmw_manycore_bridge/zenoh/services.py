@@ -11,6 +11,7 @@ from functools import partial
 from typing import NamedTuple
 
 import zenoh
+from zenoh.handlers import Callback
 
 from rmw_manycore_bridge.outside.interface import Answer, OutsideError
 from rmw_manycore_bridge.zenoh.attachment import Attachment, pack, unpack
@@ -34,7 +35,9 @@ class ZenohServer:
     ) -> None:
         self._declared, self._key, self._notify = declared, key, notify
         self._arrived: deque[tuple[_Caller, bytes]] = deque()
-        self._entity = session.declare_queryable(key, self._note, complete=True)
+        self._entity = session.declare_queryable(
+            key, Callback(self._note, indirect=False), complete=True
+        )
 
     def _note(self, query: zenoh.Query) -> None:
         """Keep a request, in a thread of zenoh."""
@@ -102,7 +105,9 @@ class ZenohClient:
         number = next(self._numbers)
         attachment = pack(number, time.time_ns(), self._gid)
         try:
-            self._entity.get(partial(self._note, number), payload=data, attachment=attachment)
+            # Otherwise each call starts a thread for its answer.
+            answered = Callback(partial(self._note, number), indirect=False)
+            self._entity.get(answered, payload=data, attachment=attachment)
         except zenoh.ZError as error:
             raise OutsideError(str(error)) from error
         return number

@@ -4,22 +4,24 @@
 from __future__ import annotations
 
 import ctypes
-import hashlib
 import itertools
 import time
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from threading import Event
 from typing import Any, NamedTuple
 
+import xxhash
 import zenoh
 from zenoh import ext
+from zenoh.handlers import Callback
 
+from rmw_manycore_bridge.outside.interface import OutsideError
 from rmw_manycore_bridge.zenoh.attachment import pack, unpack
 from rmw_manycore_bridge.zenoh.graph import Declared, Graph, say
 from rmw_manycore_py.native._transport import Qos
 
-_GID_BYTES = 16
 _SCOUT_DEPTH = 10
 _MAX_HOLD_UP_S, _STEP_S = 1.0, 0.05  # far longer than a turn of the bridge takes
 _HEARTBEAT_S = 0.5  # as rmw_zenoh: period in which the last number is repeated, if it has changed
@@ -38,6 +40,10 @@ class _Message(NamedTuple):
     data: bytes
 
 
+# Called in the thread of zenoh that has received something, with its subscription.
+Notify = Callable[["ZenohSubscription"], None]
+
+
 class ZenohSubscription:
     """Keeps arrived messages until they are taken.
 
@@ -46,11 +52,10 @@ class ZenohSubscription:
     such a gap, too.
     """
 
-    def __init__(
-        self, key: str, notify: Callable[[], None], left: Callable[[], object] = bool
-    ) -> None:
+    def __init__(self, key: str, notify: Notify, left: Callable[[], object] = bool) -> None:
         self._key, self._notify, self._left = key, notify, left
-        self._arrived: deque[_Message] = deque(maxlen=_SCOUT_DEPTH)
+        self._arrived: deque[_Message] = deque()
+        self._depth = _SCOUT_DEPTH
         self._is_reliable = True  # until the QoS is known
         self._room = Event()
         self._said: set[str] = set()
@@ -62,12 +67,13 @@ class ZenohSubscription:
 
     def declare(self, session: zenoh.Session, key: str, qos: Qos) -> None:
         """Begin to receive."""
+        received = Callback(self._note, indirect=False)  # in the thread that reads the link
         if qos.durability == "volatile":
-            self._entity = session.declare_subscriber(key, self._note)
+            self._entity = session.declare_subscriber(key, received)
             return
         is_reliable = qos.reliability == "reliable"
         self._entity = ext.declare_advanced_subscriber(
-            *(session, key, self._note),
+            *(session, key, received),
             history=ext.HistoryConfig(detect_late_publishers=True, max_samples=qos.depth),
             recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True)
             if is_reliable
@@ -77,10 +83,10 @@ class ZenohSubscription:
 
     def keep(self, qos: Qos) -> None:
         """Keep as many messages as the QoS says."""
-        self._arrived = deque(self._arrived, maxlen=qos.depth)
+        self._depth = qos.depth
         self._is_reliable = qos.reliability == "reliable"
 
-    def appear(self, declared: Declared, notify: Callable[[], None]) -> None:
+    def appear(self, declared: Declared, notify: Notify) -> None:
         """Take over the token in the graph, and notify of messages as a route wants it."""
         self._declared, self._notify = declared, notify
 
@@ -97,16 +103,22 @@ class ZenohSubscription:
             self._say_once(f"{_OTHER_TYPE}: {str(sample.key_expr)!a}", _OTHER_TYPE)
             return
         message = self._message_of(sample)
-        if self._is_reliable:
+        if self._is_reliable and self._is_full():
             self._wait_for_room()
+        if self._is_full():
+            with suppress(IndexError):  # taken meanwhile
+                self._arrived.popleft()
         self._arrived.append(message)
-        self._notify()
+        self._notify(self)
+
+    def _is_full(self) -> bool:
+        return len(self._arrived) >= self._depth
 
     def _wait_for_room(self) -> None:
         end_s = time.monotonic() + _MAX_HOLD_UP_S
-        while len(self._arrived) == self._arrived.maxlen and time.monotonic() < end_s:
+        while self._is_reliable and self._is_full() and time.monotonic() < end_s:
             self._room.clear()
-            if len(self._arrived) == self._arrived.maxlen:
+            if self._is_full():
                 self._room.wait(_STEP_S)
 
     def _message_of(self, sample: zenoh.Sample) -> _Message:
@@ -114,8 +126,8 @@ class ZenohSubscription:
         found = unpack(attached.to_bytes()) if attached is not None else None
         if found is None:
             self._say_once(_NO_NUMBERS)
-            key = hashlib.blake2s(str(sample.key_expr).encode(), digest_size=_GID_BYTES)
-            return _Message(key.digest(), next(self._numbers), time.time_ns(), data)
+            gid = xxhash.xxh3_128_digest(str(sample.key_expr).encode())
+            return _Message(gid, next(self._numbers), time.time_ns(), data)
         if found.is_old:
             self._say_once(_OLD_PEER)
         return _Message(found.gid, found.number, found.sent_ns, data)
@@ -217,7 +229,10 @@ class ZenohPublisher:
     def publish(self, address: int, size: int, sent_ns: int) -> None:
         """Publish with the source timestamp of the platform's publisher."""
         attachment = pack(next(self._numbers), sent_ns, self.gid)
-        self._entity.put(ctypes.string_at(address, size), attachment=attachment)
+        try:
+            self._entity.put(ctypes.string_at(address, size), attachment=attachment)
+        except zenoh.ZError as error:
+            raise OutsideError(str(error)) from error
 
     def has_listeners(self) -> bool:
         """Return whether others subscribe, with a token in the graph or without any."""

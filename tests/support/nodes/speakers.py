@@ -48,3 +48,13 @@ def hear(topic: str, words: dict[str, Any]) -> None:
         node.create_subscription(type_of("std_msgs/msg/String"), topic, heard, qos(words))
         announce("listening")
         spin_until(node, lambda: False, 1e6)
+
+
+def flood(topic: str) -> None:
+    """Publish much more than the buffers of a slow link or a stopped subscriber hold."""
+    with peer_node("flooder") as node:
+        message = type_of("std_msgs/msg/String")(data="x" * 200_000)
+        publisher = node.create_publisher(type_of("std_msgs/msg/String"), topic, qos({}))
+        node.create_timer(0.005, lambda: publisher.publish(message))
+        announce("flooding")
+        spin_until(node, lambda: False, 1e6)
