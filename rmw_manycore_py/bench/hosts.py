@@ -12,7 +12,9 @@ from contextlib import ExitStack, contextmanager
 Host = list[str]  # command prefix that runs a program there
 # Namespaces of one machine share memory, hosts do not.
 NETWORK = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
+ADDRESSES = ("10.77.0.1", "10.77.0.2")
 _CABLE = "cable"
+_BURST = "256kb"  # of a shaped cable: several times what a timer tick lets pass
 
 
 def can_have_hosts() -> bool:
@@ -21,8 +23,11 @@ def can_have_hosts() -> bool:
 
 
 @contextmanager
-def two_hosts() -> Iterator[tuple[Host, Host]]:
-    """Create both hosts, and remove them at the end."""
+def two_hosts(rate: str | None = None) -> Iterator[tuple[Host, Host]]:
+    """Create both hosts, and remove them at the end.
+
+    :param rate: of the cable, as tc(8) has it; unlimited by default.
+    """
     names = [f"bench{os.getpid()}{side}" for side in "ab"]
     with ExitStack() as ending:
         for name in names:
@@ -30,13 +35,21 @@ def two_hosts() -> Iterator[tuple[Host, Host]]:
             ending.callback(_ip, "netns", "del", name)
         end, other_end = (("netns", name) for name in names)
         _ip("link", "add", _CABLE, *end, "type", "veth", "peer", "name", _CABLE, *other_end)
-        for number, name in enumerate(names, start=1):
-            _ip("-n", name, "addr", "add", f"10.77.0.{number}/24", "dev", _CABLE)
+        for name, address in zip(names, ADDRESSES, strict=True):
+            _ip("-n", name, "addr", "add", f"{address}/24", "dev", _CABLE)
             for device in ("lo", _CABLE):
                 _ip("-n", name, "link", "set", device, "up")
             _ip("-n", name, "route", "add", "224.0.0.0/4", "dev", _CABLE)
+            if rate is not None:
+                _shape(name, rate)
         here, there = (["ip", "netns", "exec", name] for name in names)
         yield here, there
+
+
+def _shape(name: str, rate: str) -> None:
+    limit = ("rate", rate, "burst", _BURST, "latency", "50ms")
+    command = ["tc", "-n", name, "qdisc", "add", "dev", _CABLE, "root", "tbf", *limit]
+    subprocess.run(command, check=True, capture_output=True)
 
 
 def _ip(*words: str) -> None:

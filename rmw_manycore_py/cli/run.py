@@ -30,6 +30,7 @@ from rmw_manycore_py.trace.files import SUFFIXES
         "manycore run my_map.yaml",
         "manycore run talker_listener --duration 10",
         "manycore run more_nodes.yaml --join",
+        "manycore run robot.yaml --host laptop",
         "manycore run talker_listener --duration 10 --trace trace.json",
         "manycore run talker_listener --virtual --instant --duration 60",
         "manycore run whill --profile whill.profile.json --platform coolidge --duration 60",
@@ -51,6 +52,7 @@ def command(
     duration_s: float | None,
     joins: bool,
     nodes: tuple[str, ...],
+    host: str | None,
     virtual: bool,
     instant: bool,
     factor: float | None,
@@ -70,7 +72,7 @@ def command(
     In virtual time a run is repeatable and may take less time than --duration says.
     """
     time = virtual_time(mapfile, virtual, instant, factor, profile, platform_name, seed)
-    run, _ = prepared_run(mapfile, joins, nodes, virtual=time)
+    run, _ = prepared_run(mapfile, joins, nodes, virtual=time, host=host)
     report = _print_json if as_json else RunPrinter(run.program_names).report
     sys.exit(run.run(report, duration_s, trace=trace))
 

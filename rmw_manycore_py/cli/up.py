@@ -33,7 +33,9 @@ from rmw_manycore_py.ros.domain import default_platform
 @mapfile_argument()
 @click.option("-d", "--detach", "detached", is_flag=True, help="Run in the background.")
 @starting_options
-def command(mapfile: Path, detached: bool, joins: bool, nodes: tuple[str, ...]) -> None:
+def command(
+    mapfile: Path, detached: bool, joins: bool, nodes: tuple[str, ...], host: str | None
+) -> None:
     """Start the nodes of MAPFILE; -d: in the background.
 
     Without -d, same as `manycore run`. With -d, returns once all nodes are started; Ctrl-C before
@@ -45,7 +47,7 @@ def command(mapfile: Path, detached: bool, joins: bool, nodes: tuple[str, ...]) 
     """
     if detached and not joins and not nodes and (running := _run_of(mapfile)):
         sys.exit(_apply(running))
-    run, placement = prepared_run(mapfile, joins, nodes, detached)
+    run, placement = prepared_run(mapfile, joins, nodes, detached, host=host)
     printer = RunPrinter(run.program_names)
     if not detached:
         sys.exit(run.run(printer.report))

@@ -12,7 +12,7 @@ from rmw_manycore_py.launch.events import Finished
 from rmw_manycore_py.launch.processes.environment import outside_environment
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.runner import Report, Runner
-from rmw_manycore_py.mapfile.placing.placement import Placement
+from rmw_manycore_py.mapfile.placing.placement import BridgePlacement, Placement
 from rmw_manycore_py.platform.topology import Core
 from rmw_manycore_py.process.signals import signal_inbox
 from rmw_manycore_py.routes.plan import Plan
@@ -23,11 +23,12 @@ _STANDALONE_CORES = (Core(1, 1), Core(1, 2))
 
 
 def bridge_programs(placement: Placement) -> list[NodeProgram]:
-    """Return a program for each bridge process that has routes."""
-    bridge = placement.bridge
-    if bridge is None:
-        return []
-    plan = Plan(placement.name, bridge.routes, bridge.outside)
+    """Return a program for each process of the bridge, and of the links to other hosts."""
+    return [one for bridge in placement.crossings for one in _programs(placement.name, bridge)]
+
+
+def _programs(platform: str, bridge: BridgePlacement) -> list[NodeProgram]:
+    plan = Plan(platform, bridge.routes, bridge.outside)
     _require_engine(plan)
     return [
         bridge_program(plan, direction, lane, core, bridge.host_cpus)
@@ -53,7 +54,8 @@ def run_bridge(plan: Plan, report: Report) -> int:
 
 
 def _require_engine(plan: Plan) -> None:
-    if plan.outside.engine == "zenoh" and None in map(find_spec, ("zenoh", "xxhash")):
+    needs_zenoh = plan.outside.engine in ("zenoh", "hosts")
+    if needs_zenoh and None in map(find_spec, ("zenoh", "xxhash")):
         raise ManycoreError(
             "the bridge's engine zenoh is not installed: pip install 'rmw-manycore[zenoh]'"
         )
@@ -65,7 +67,7 @@ def bridge_program(
     """Return the program of one bridge process."""
     words = (plan.to_json(), direction, *map(str, (lane, *core)))
     return NodeProgram(
-        name=f"(bridge {direction}{f' {lane}' if lane else ''})",
+        name=f"({plan.outside.title} {direction}{f' {lane}' if lane else ''})",
         command=own_program("rmw_manycore_bridge", *words),
         environment=outside_environment(),
         core=core,

@@ -82,11 +82,15 @@ class Task:
             check_joined(placement)
         check_scheduling(placement)
         nodes = self._only_moved(self.move.name, placement) if self.move else placement.nodes
-        return Mapped(mapfile, replace(placement, bridge=old, nodes=nodes))
+        return Mapped(
+            mapfile, replace(placement, bridge=old, links=self.runs.placement.links, nodes=nodes)
+        )
 
     def _read_again(self) -> Mapfile:
         old = self.runs.mapfile
         mapfile = load_mapfile(old.path)
+        if old.host is not None:
+            mapfile = self._of_host(mapfile, old.host)
         if self.only_known:
             mapfile = mapfile.only(old.sections.nodes)
         if mapfile.platform_name != self.runs.placement.name:
@@ -98,6 +102,11 @@ class Task:
         if mapfile.sections.clock != old.sections.clock:
             raise self._kept("the clock")
         return mapfile
+
+    def _of_host(self, mapfile: Mapfile, host: str) -> Mapfile:
+        if mapfile.sections.hosts != self.runs.mapfile.sections.hosts:
+            raise self._kept("the section 'hosts'")
+        return mapfile.of_host(host)
 
     def _kept(self, what: str) -> ManycoreError:
         path, name = self.runs.mapfile.path, self.runs.placement.name
@@ -135,7 +144,7 @@ class Task:
     def _occupied(self) -> set[Core]:
         """Return the cores of the bridge, and of processes that are not of this run."""
         placement = self.runs.placement
-        lanes = placement.bridge.cores if placement.bridge else ()
+        lanes = [lane for one in placement.crossings for lane in one.cores]
         of_bridge = {core for lane in lanes for core in lane}
         own = {node.place for node in placement.nodes}
         return (occupied_cores(placement.name, self.pids) | of_bridge) - own

@@ -23,7 +23,7 @@ from rmw_manycore_py.profile.files import load
 
 
 def starting_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add --join and --node to a command."""
+    """Add --host, --join and --node to a command."""
     node = click.option(
         "--node",
         "nodes",
@@ -34,7 +34,8 @@ def starting_options(command: Callable[..., Any]) -> Callable[..., Any]:
     join = click.option(
         "--join", "joins", is_flag=True, help="Add the nodes to a platform that is already running."
     )
-    return join(node(command))
+    host = click.option("--host", metavar="HOST", help="Start only the part of this host.")
+    return host(join(node(command)))
 
 
 def prepared_run(
@@ -43,11 +44,18 @@ def prepared_run(
     nodes: tuple[str, ...],
     detached: bool = False,
     virtual: VirtualTime | None = None,
+    host: str | None = None,
 ) -> tuple[Run, Placement]:
-    """Return the run of a mapfile or of some of its nodes, without starting it."""
-    loaded = _only(load_mapfile(mapfile), nodes)
+    """Return the run of a mapfile, of a host's part, or of some nodes, without starting it."""
+    loaded = load_mapfile(mapfile)
+    if host is not None:
+        loaded = _of_host(loaded, host)
+    loaded = _only(loaded, nodes)
     if loaded.sections.clock == "virtual" and virtual is None:
         virtual = VirtualTime(factor=1.0)
+    if virtual is not None and host is not None:
+        text = "--host: hosts of one platform have no common virtual time"
+        raise ManycoreError(text, EXIT_BAD_INPUT)
     if virtual is not None and joins:
         text = "--join: the platform that is running lives in wall time, not in virtual time"
         raise ManycoreError(text, EXIT_BAD_INPUT)
@@ -113,6 +121,20 @@ def virtual_time(
     if not (virtual or names):
         return None
     return VirtualTime(0.0 if instant else factor or 1.0)
+
+
+def _of_host(mapfile: Mapfile, host: str) -> Mapfile:
+    """Return the part of a mapfile that runs on a host."""
+    hosts = mapfile.sections.hosts
+    if host not in hosts:
+        known = f"it has {', '.join(hosts)}" if hosts else "it has no section 'hosts'"
+        text = f"--host: no host '{host}' in {mapfile.path}; {known}"
+        raise ManycoreError(text, EXIT_BAD_INPUT)
+    part = mapfile.of_host(host)
+    if not part.sections.nodes:
+        text = f"--host: {mapfile.path} places no node on the clusters of '{host}'"
+        raise ManycoreError(text, EXIT_BAD_INPUT)
+    return part
 
 
 def _only(mapfile: Mapfile, names: tuple[str, ...]) -> Mapfile:

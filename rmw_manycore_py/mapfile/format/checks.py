@@ -55,6 +55,36 @@ def _misplaced(mapfile: Mapfile, name: str, node: NodeSection) -> Problem | None
     return None
 
 
+def check_hosts(mapfile: Mapfile) -> Iterator[Problem]:
+    """Yield clusters that no host has or that two have, and topics that two hosts bridge."""
+    sections, problem = mapfile.sections, mapfile.document.problem
+    if not sections.hosts:
+        return
+    owners: dict[int, str] = {}
+    for host, section in sections.hosts.items():
+        path = ("hosts", host, "clusters")
+        for number in section.clusters:
+            if mapfile.topology.cluster(number) is None:
+                expected = f"1 to {len(mapfile.topology.clusters)}, the clusters of the platform"
+                yield problem(path, expected, str(number))
+            elif owners.setdefault(number, host) != host:
+                yield problem(
+                    path, "each cluster on one host", f"{number}, which is on {owners[number]}"
+                )
+    crossing: dict[str, str] = {}
+    for name, node in sections.nodes.items():
+        owner = owners.get(node.cluster)
+        if owner is None:
+            path = ("nodes", name, "cluster")
+            yield problem(path, "the cluster of a host", f"{node.cluster}, which no host has")
+            continue
+        for key in ("topic_in", "topic_to"):
+            for topic in getattr(node, key):
+                if (other := crossing.setdefault(f"{key} {topic}", owner)) != owner:
+                    expected = f"{topic} bridged by one host: it would come twice"
+                    yield problem(("nodes", name, key, topic), expected, f"it on {other}, too")
+
+
 def check_starts(mapfile: Mapfile) -> Iterator[Problem]:
     """Yield nodes with no way to start, or with several."""
     for name, node in mapfile.sections.nodes.items():

@@ -11,6 +11,7 @@ from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.checks import (
     check_environment,
     check_files,
+    check_hosts,
     check_placement,
     check_starts,
 )
@@ -51,6 +52,7 @@ def load_mapfile(
     mapfile = Mapfile(path, sections, _topology(sections.platform), document, tuple(notices))
     problems = [
         *check_placement(mapfile),
+        *check_hosts(mapfile),
         *(check_starts(mapfile) if starts_nodes else ()),
         *check_environment(mapfile),
         *check_files(mapfile),

@@ -23,6 +23,7 @@ class Mapfile:
     :param topology: clusters and cores of the platform that it describes.
     :param document: where in the file each key stands, for errors.
     :param notices: what the user should know, although nothing is wrong.
+    :param host: the host whose part it is; None for the whole.
     """
 
     path: Path
@@ -30,6 +31,7 @@ class Mapfile:
     topology: Topology
     document: Document
     notices: tuple[str, ...]
+    host: str | None = None
 
     @property
     def platform_name(self) -> str:
@@ -44,6 +46,20 @@ class Mapfile:
         """Return the mapfile with some of its nodes."""
         chosen = {name: node for name, node in self.sections.nodes.items() if name in names}
         return self.with_nodes(chosen)
+
+    def of_host(self, name: str) -> Mapfile:
+        """Return the part of a host: the nodes of its clusters."""
+        clusters = self.sections.hosts[name].clusters
+        nodes = self.sections.nodes.items()
+        return replace(
+            self.with_nodes({node: one for node, one in nodes if one.cluster in clusters}),
+            host=name,
+        )
+
+    @property
+    def home_cluster(self) -> int:
+        """Cluster of the bridge and of the links: the first of this host."""
+        return self.sections.hosts[self.host].clusters[0] if self.host else 1
 
     def file(self, name: str) -> Path:
         """Return the path of a referenced file: relative to the mapfile, `~` expanded."""

@@ -73,6 +73,7 @@ NodeName = Annotated[str, StringConstraints(pattern=f"^/?{_PARTS}$", max_length=
 # rosservice:///ns/{node}.
 RemapRule = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_/~:{}]+$")]
 Namespace = Annotated[str, StringConstraints(pattern=f"^/?({_PARTS})?$")]
+HostName = Annotated[str, StringConstraints(pattern=f"^{NAME_PART}$")]
 PlatformName = Annotated[str, StringConstraints(pattern=PLATFORM_NAME)]
 ReceiveDesign = Literal["queue", "per_topic"]
 
@@ -255,6 +256,15 @@ _A_TYPE = "a type such as std_msgs/msg/String or std_srvs/srv/SetBool"
 Crossings = Annotated[dict[TopicPattern, InterfaceType | None], AfterValidator(_check_crossings)]
 
 
+class HostSection(Section):
+    """A host that has clusters of the platform."""
+
+    clusters: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
+        description="Numbers of its clusters"
+    )
+    address: Locator = Field(description="Where the other hosts reach it, as tcp/10.0.0.1:7450")
+
+
 class RespawnSection(Section):
     """Restart of a node that ends by itself."""
 
@@ -382,6 +392,9 @@ class MapfileSections(Section):
         description="Keep glibc from returning memory to the system after each message",
     )
     bridge: BridgeSection = Field(default=BridgeSection(), description="Bridge to external domains")
+    hosts: dict[HostName, HostSection] = Field(
+        default_factory=dict, description="Hosts by name, for manycore run --host"
+    )
     topics: dict[TopicName, TopicSection] = Field(
         default_factory=dict, description="Topics with a fixed type, topic DSM size or transfer"
     )

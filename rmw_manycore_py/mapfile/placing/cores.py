@@ -9,7 +9,7 @@ from itertools import chain, count
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
-from rmw_manycore_py.mapfile.placing.placement import BridgePlacement, Placement
+from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.platform.topology import (
     RECEIVE_THREAD_CORE,
     Core,
@@ -121,18 +121,18 @@ def _check_occupied(mapfile: Mapfile, both: Collection[Core]) -> None:
 def assign_cpus(
     mapfile: Mapfile,
     used: Sequence[Core],
-    bridge: BridgePlacement | None,
+    beside: Collection[int],
     cpus: Sequence[int],
     kept: Kept = FRESH,
 ) -> dict[Core, int]:
     """Return the host CPU of every used core: nodes, workers, then receive threads.
 
+    :param beside: clusters of the bridge.
+
     The bridge may run on any CPU or on those named in the mapfile: its cores get none. Isolated
     CPUs are only assigned to nodes that name them. Cores of a machine have their CPUs.
     """
-    clusters = {core.cluster for core in used}
-    if bridge is not None:
-        clusters |= {core.cluster for lane in bridge.cores for core in lane}
+    clusters = {core.cluster for core in used} | {*beside}
     receivers = [Core(cluster, RECEIVE_THREAD_CORE) for cluster in sorted(clusters)]
     cores = [*used, *receivers]
     fixed = _chosen_cpus(mapfile, used, cpus)

@@ -19,6 +19,8 @@ from rmw_manycore_py.ros.domain import ros_domain
 from rmw_manycore_py.ros.names import expand
 from rmw_manycore_py.ros.patterns import is_pattern
 from rmw_manycore_py.ros.qos import Policies
+from rmw_manycore_py.routes.hosts import host_routes
+from rmw_manycore_py.routes.outside import OutsideSettings
 from rmw_manycore_py.routes.route import (
     REQUEST_TIMEOUT_S,
     Direction,
@@ -49,7 +51,7 @@ ONLY_OF = {"max_hz": "topic", "max_size": "topic", "qos": "topic", "timeout": "s
 def bridge_placement(
     mapfile: Mapfile, starts: dict[str, NodeStart], used: Collection[Core]
 ) -> BridgePlacement | None:
-    """Return the routes and the bridge's cores: the first free ones of cluster 1, two per lane."""
+    """Return the routes, and the first free cores of the bridge's cluster, two per lane."""
     bridge = mapfile.sections.bridge
     routes: list[Route] = []
     for name, node in mapfile.sections.nodes.items():
@@ -57,13 +59,28 @@ def bridge_placement(
     _check_routes(mapfile, routes)
     if not routes:
         return None
-    first = mapfile.topology.clusters[0]
-    free = [Core(1, core) for core in first.free if Core(1, core) not in used]
-    # If all cores are taken, the bridge shares the last one.
-    cores = [*free, *[Core(1, first.free[-1])] * 2 * bridge.lanes]
-    lanes = tuple((cores[2 * i], cores[2 * i + 1]) for i in range(bridge.lanes))
     placed = arranged(routes, bridge.lanes)
+    lanes = _lanes(mapfile, used, bridge.lanes)
     return BridgePlacement(placed, lanes, bridge.host_cpu or (), bridge.outside.settings)
+
+
+def links_placement(mapfile: Mapfile, used: Collection[Core]) -> BridgePlacement | None:
+    """Return what joins this host's part of a platform with the parts of other hosts."""
+    if mapfile.host is None:
+        return None
+    addresses = {name: host.address for name, host in mapfile.sections.hosts.items()}
+    listen = addresses.pop(mapfile.host)
+    settings = OutsideSettings("hosts", tuple(addresses.values()), listen, mapfile.host)
+    return BridgePlacement(host_routes(), _lanes(mapfile, used, 1), outside=settings)
+
+
+def _lanes(mapfile: Mapfile, used: Collection[Core], count: int) -> tuple[tuple[Core, Core], ...]:
+    cluster = mapfile.topology.clusters[mapfile.home_cluster - 1]
+    places = [Core(cluster.id, core) for core in cluster.free]
+    free = [core for core in places if core not in used]
+    # If all cores are taken, the processes share the last one.
+    cores = [*free, *[places[-1]] * 2 * count]
+    return tuple((cores[2 * i], cores[2 * i + 1]) for i in range(count))
 
 
 def _routes_of(bridge: BridgeSection, node: NodeSection, start: NodeStart) -> Iterator[Route]:

@@ -252,6 +252,7 @@ class Placement:
     :param host_cpus: host CPU of each core in use, those of receive threads and workers included.
     :param bridge: what crosses to the outside; None where nothing does.
     :param notices: what the user should know, although nothing is wrong.
+    :param links: what joins this host's part with those of other hosts; None for the whole.
     """
 
     name: str
@@ -262,3 +263,9 @@ class Placement:
     host_cpus: Mapping[Core, int]
     bridge: BridgePlacement | None
     notices: tuple[str, ...]
+    links: BridgePlacement | None = None
+
+    @property
+    def crossings(self) -> tuple[BridgePlacement, ...]:
+        """Everything that leaves the platform or this host's part of it."""
+        return tuple(one for one in (self.bridge, self.links) if one is not None)

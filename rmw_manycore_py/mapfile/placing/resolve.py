@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from itertools import chain
 
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
@@ -15,7 +16,7 @@ from rmw_manycore_py.mapfile.placing.cores import (
     assign_cpus,
     worker_cores,
 )
-from rmw_manycore_py.mapfile.placing.crossings import bridge_placement
+from rmw_manycore_py.mapfile.placing.crossings import bridge_placement, links_placement
 from rmw_manycore_py.mapfile.placing.foreign import foreign_starts
 from rmw_manycore_py.mapfile.placing.imports import check_imports
 from rmw_manycore_py.mapfile.placing.launched import launch_rules, read_launch
@@ -84,9 +85,13 @@ def _placement(
     cores = assign_cores(mapfile, occupied, kept)
     workers, worker_problems = worker_cores(mapfile, {*cores.values(), *occupied})
     of_workers = [core for one in workers.values() for core in one]
-    bridge = bridge_placement(mapfile, starts, {*cores.values(), *of_workers, *occupied})
+    taken = {*cores.values(), *of_workers, *occupied}
+    bridge = bridge_placement(mapfile, starts, taken)
+    taken |= {core for lane in bridge.cores for core in lane} if bridge else set()
+    links = links_placement(mapfile, taken)
     cpus = usable_cpus()
-    host_cpus = assign_cpus(mapfile, [*cores.values(), *of_workers], bridge, cpus, kept)
+    beside = {core.cluster for one in (bridge, links) if one for core in chain(*one.cores)}
+    host_cpus = assign_cpus(mapfile, [*cores.values(), *of_workers], beside, cpus, kept)
     launched = {name: start.launched for name, start in starts.items()}
     rules = {name: launch_rules(name, launched) for name in starts}
     nodes = tuple(
@@ -119,6 +124,7 @@ def _placement(
         memory=memory,
         host_cpus=host_cpus,
         bridge=bridge,
+        links=links,
         notices=(
             *mapfile.notices,
             *of_launch(mapfile, launch),

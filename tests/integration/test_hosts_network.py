@@ -1,0 +1,90 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Two hosts of one platform in network namespaces: links that go down, and TLS."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from rmw_manycore_py.bench.hosts import ADDRESSES, Host, can_have_hosts, two_hosts
+from support import IS_MANYCORE
+from support.nodes.parted import HEARD, HOSTS, Parted
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.needs("zenoh", "xxhash"),
+    pytest.mark.skipif(not IS_MANYCORE, reason="hosts are part of rmw_manycore"),
+    pytest.mark.skipif(not can_have_hosts(), reason="network namespaces need root"),
+]
+
+
+@pytest.fixture
+def both() -> Iterator[tuple[Host, Host]]:
+    with two_hosts() as hosts:
+        yield hosts
+
+
+def parted(start: Any, directory: Path, both: tuple[Host, Host], link: str) -> Parted:
+    """Return the hosts of a mapfile, one in each namespace."""
+    addresses = [f"{link}/{address}:7450" for address in ADDRESSES]
+    pairs = (dict(zip(HOSTS, ends, strict=True)) for ends in (addresses, both))
+    return Parted(start, directory, *pairs)
+
+
+def set_link(host: Host, state: str) -> None:
+    subprocess.run([*host, "ip", "link", "set", "cable", state], check=True)
+
+
+@pytest.mark.long
+def test_a_link_that_was_down(start, tmp_path, both) -> None:
+    hosts = parted(start, tmp_path, both, "tcp")
+    runs = hosts.run_both()
+    set_link(both[0], "down")
+    runs["b"].wait_for("lost /manycore_host_a_outward; connecting again")
+    runs["b"].skip_output()
+    set_link(both[0], "up")
+    runs["b"].wait_for(HEARD)
+    sent = hosts.row("a", "outward", "/chatter")["messages"]
+    row = hosts.row("b", "inward", "/chatter")
+    assert row["lost"] > 0
+    assert row["messages"] + row["lost"] >= sent - 1  # one may be under way
+
+
+def certificates(directory: Path) -> Path:
+    """Make an authority and one certificate for both hosts; return zenoh's configuration."""
+
+    def openssl(*words: str) -> None:
+        subprocess.run(["openssl", *words], check=True, capture_output=True, cwd=directory)
+
+    key = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-subj")
+    openssl("req", "-x509", *key, "/CN=authority", "-keyout", "ca.key", "-out", "ca.pem")
+    openssl("req", *key, "/CN=host", "-keyout", "host.key", "-out", "host.csr")
+    names = ",".join(f"IP:{address}" for address in ADDRESSES)
+    (directory / "names").write_text(f"subjectAltName={names}\n")
+    signed_by = ("-CA", "ca.pem", "-CAkey", "ca.key", "-CAcreateserial", "-extfile", "names")
+    openssl("x509", "-req", "-in", "host.csr", *signed_by, "-out", "host.pem")
+    pair = {"certificate": "host.pem", "private_key": "host.key"}
+    tls = {
+        "root_ca_certificate": str(directory / "ca.pem"),
+        "enable_mtls": True,
+        **{
+            f"{side}_{part}": str(directory / file)
+            for side in ("listen", "connect")
+            for part, file in pair.items()
+        },
+    }
+    config = directory / "zenoh.json5"
+    config.write_text(json.dumps({"transport": {"link": {"tls": tls}}}))
+    return config
+
+
+@pytest.mark.needs("openssl")
+def test_topics_over_tls(start, tmp_path, both) -> None:
+    hosts = parted(start, tmp_path, both, "tls")
+    hosts.run_both(ZENOH_SESSION_CONFIG_URI=str(certificates(tmp_path)))
+    assert hosts.row("b", "inward", "/chatter")["lost"] == 0
