@@ -99,13 +99,12 @@ class OutwardTopic(Topic):
     def take(self, limit: int) -> None:
         """Take up to `limit` messages."""
         subscription = self._subscription
+        if subscription is None:
+            return
         for _ in range(limit):
-            if subscription is None:
-                return
             claim = subscription.claim()
             if claim is None:
-                self._count_lost(subscription)
-                return
+                break
             try:
                 self.arrived(
                     *(claim.publisher, claim.sequence),
@@ -113,7 +112,9 @@ class OutwardTopic(Topic):
                 )
             finally:
                 claim.release()
-        self._sides.inside.wake()  # continue after the other routes
+        else:
+            self._sides.inside.wake()  # continue after the other routes
+        self._count_lost(subscription)
 
     def send(self, address: int, size: int, sent_ns: int) -> None:
         """Publish outside."""

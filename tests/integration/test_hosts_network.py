@@ -12,8 +12,9 @@ from typing import Any
 import pytest
 
 from rmw_manycore_py.bench.hosts import ADDRESSES, Host, can_have_hosts, two_hosts
-from support import IS_MANYCORE
+from support import IS_MANYCORE, wait_until
 from support.nodes.parted import HEARD, HOSTS, Parted
+from support.nodes.speakers import flood, hear
 
 pytestmark = [
     pytest.mark.integration,
@@ -53,6 +54,19 @@ def test_a_link_that_was_down(start, tmp_path, both) -> None:
     row = hosts.row("b", "inward", "/chatter")
     assert row["lost"] > 0
     assert row["messages"] + row["lost"] >= sent - 1  # one may be under way
+
+
+def test_a_slow_link_costs_counted_messages(start, tmp_path) -> None:
+    """The publisher goes on at its pace, 40 times that of the link."""
+    with two_hosts("8mbit") as both:
+        hosts = parted(start, tmp_path, both, "tcp")
+        hosts.run_both()
+        hearer, speaker = hosts.node("b", hear, "/much", {}), hosts.node("a", flood, "/much")
+        hearer.wait_for("^heard x")
+        wait_until(lambda: hosts.row("a", "outward", "/much")["lost"] > 100, "losses are counted")
+        assert speaker.is_running()
+        hearer.skip_output()
+        hearer.wait_for("^heard x")
 
 
 def certificates(directory: Path) -> Path:
