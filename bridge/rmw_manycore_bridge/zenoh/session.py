@@ -12,6 +12,9 @@ import zenoh
 
 DEFAULT_CONNECT = ("tcp/localhost:7447",)
 CONFIG_FILE = "ZENOH_SESSION_CONFIG_URI"  # the variable that rmw_zenoh reads
+# The threads that read links accept them, too: by default, a message that comes over an accepted
+# link wakes the accepting thread, which wakes a reading one.
+_THREADS = "ZENOH_RUNTIME", "(acc: (handover: rx))"
 _COMMON: dict[str, Any] = {
     "mode": "peer",
     "scouting/multicast/enabled": False,
@@ -53,6 +56,7 @@ def open_link(listen: Sequence[str], connect: Sequence[str]) -> zenoh.Session:
 
 
 def _open(path: str | None, settings: Mapping[str, Any]) -> zenoh.Session:
+    os.environ.setdefault(*_THREADS)
     config = zenoh.Config.from_file(path) if path else zenoh.Config()
     for key, value in settings.items():
         config.insert_json5(key, json.dumps(value))
