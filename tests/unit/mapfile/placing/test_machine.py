@@ -30,7 +30,7 @@ def mapfile_on(machine: str, directory: Path, *nodes: str) -> Mapfile:
 
 
 def cpus_on(mapfile: Mapfile) -> dict[Core, int]:
-    return assign_cpus(mapfile, [*assign_cores(mapfile).values()], None, cpus=(0, 1))
+    return assign_cpus(mapfile, [*assign_cores(mapfile).values()], (), cpus=(0, 1))
 
 
 def test_a_core_is_a_cpu_of_its_cluster(tmp_path: Path) -> None:
