@@ -34,6 +34,7 @@ OWN = only("(block)")
 FAST_DDS_AND_OURS = "Fast DDS + platform"
 OTHERS = only("64 B: futex", "64 B: pipe", "64 B: Fast DDS", "1 MiB: Fast DDS")
 RCLPY = only("64 B: manycore run", "8 MiB: manycore run, inside", "1 MiB: manycore inside (block)")
+MACHINE = only("way", "copy", "64 B: same CPU, manycore inside")
 COPIES = only("copies", "numpy: manycore", "asleep: manycore")
 STARTUP = only("by hand: manycore inside", "set: manycore between")
 SPLIT = only("1 derivatives, 2")
@@ -274,6 +275,23 @@ def test_the_report_is_written(tmp_path: Path) -> None:
         "results.csv",
         "samples.csv",
     }
+
+
+@pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason="one CPU is no pair")
+def test_what_the_machines_clusters_are_worth_is_measured(tmp_path: Path) -> None:
+    report = run_bench("machine", "-o", str(tmp_path), "--plot", *MACHINE)
+    assert {result["question"] for result in report["results"]} == {
+        "cache line, one way",
+        "wake-up, one way",
+        "copy of 1 MiB",
+        "round trip 64 B",
+    }
+    assert (tmp_path / "matrix.svg").exists()
+    rows = [line.split(",") for line in (tmp_path / "matrix.csv").read_text().splitlines()]
+    assert rows[0][1:] == [row[0] for row in rows[1:]]
+    for number, row in enumerate(rows[1:], start=1):
+        assert row[number] == ""
+        assert all(float(ns) > 0 for ns in row[1:number] + row[number + 1 :])
 
 
 def test_a_plot_needs_a_place() -> None:

@@ -26,7 +26,7 @@ class Cpu:
     """An online CPU of the kernel: a core, or a hardware thread of one.
 
     :param number: as in `taskset`.
-    :param thread: index among the hardware threads of its core, from 0.
+    :param threads: the hardware threads of its core.
     :param package: socket.
     :param node: NUMA node; None on kernels without NUMA.
     :param capacity: relative to the fastest CPU, which has 1024.
@@ -36,12 +36,17 @@ class Cpu:
     """
 
     number: int
-    thread: int = 0
+    threads: tuple[int, ...]
     package: int = 0
     node: int | None = None
     capacity: int = FULL_CAPACITY
     siblings: frozenset[int] = frozenset()
     cache: Cache | None = None
+
+    @property
+    def thread(self) -> int:
+        """Index among the hardware threads of its core, from 0."""
+        return self.threads.index(self.number)
 
 
 def read_cpus(system: Path = SYSTEM) -> tuple[Cpu, ...]:
@@ -70,10 +75,9 @@ def list_of_cpus(cpus: tuple[int, ...]) -> str:
 
 def _cpu(directory: Path, number: int, node: int | None) -> Cpu:
     topology = directory / "topology"
-    threads = cpus_of_list(_text(topology / "thread_siblings_list")) or (number,)
     return Cpu(
         number,
-        threads.index(number),
+        cpus_of_list(_text(topology / "thread_siblings_list")) or (number,),
         int(_text(topology / "physical_package_id") or 0),
         node,
         int(_text(directory / "cpu_capacity") or FULL_CAPACITY),

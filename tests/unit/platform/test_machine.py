@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.platform.machine.clusters import HostCluster
-from rmw_manycore_py.platform.machine.sysfs import cpus_of_list, list_of_cpus
+from rmw_manycore_py.platform.machine.clusters import HostCluster, clusters_of
+from rmw_manycore_py.platform.machine.pairs import KINDS, OTHER_NODE, nearest_pairs
+from rmw_manycore_py.platform.machine.sysfs import cpus_of_list, list_of_cpus, read_cpus
 from rmw_manycore_py.platform.topology import (
     Core,
     machine_clusters,
@@ -17,7 +18,7 @@ from rmw_manycore_py.platform.topology import (
     profile,
     usable_cpus,
 )
-from support.samples.sysfs import MACHINES, clusters_in, description_of
+from support.samples.sysfs import MACHINES, clusters_in, description_of, write_sysfs
 
 pytestmark = pytest.mark.unit
 
@@ -118,3 +119,22 @@ def test_this_machine_has_clusters_of_its_usable_cpus() -> None:
 def test_lists_of_cpus_are_those_of_the_kernel(text: str, listed: tuple[int, ...]) -> None:
     assert cpus_of_list(f"{text}\n") == listed
     assert list_of_cpus(listed) == text
+
+
+@pytest.mark.parametrize(
+    ("name", "pairs"),
+    [
+        ("epyc_7453", [(0, 0), (0, 28), (0, 1), (0, 7)]),
+        ("epyc_9654_2s", [(0, 0), (0, 192), (0, 1), (0, 8), (0, 96)]),
+        ("altra_80", [(0, 0), (0, 1)]),
+        ("rk3588", [(0, 0), (0, 1), (0, 4)]),
+    ],
+)
+def test_pairs_of_cpus_are_the_nearest_of_each_kind(
+    name: str, pairs: list[tuple[int, int]], tmp_path: Path
+) -> None:
+    cpus = read_cpus(write_sysfs(description_of(name), tmp_path))
+    found = nearest_pairs(cpus, clusters_of(cpus))
+    assert [*found.values()] == pairs
+    assert [*found] == [kind for kind in KINDS if kind in found]
+    assert (OTHER_NODE in found) == (name == "epyc_9654_2s")
