@@ -33,7 +33,7 @@ from rmw_manycore_py.profile.files import load
     type=click.Choice(PROFILES),
     default="host",
     show_default=True,
-    help="Shape of the platform: this machine, or a chip.",
+    help="Shape of the platform: emulated clusters, those of this machine, or a chip.",
 )
 @click.option(
     "--plan",
@@ -49,11 +49,11 @@ from rmw_manycore_py.profile.files import load
 def command(sources: tuple[str, ...], profile: str, plan: bool, output: Path | None) -> None:
     """Write a mapfile template for the nodes in SOURCES.
 
-    Only the clusters are left to choose. SOURCES are Python files, directories of them, and at
-    most one launch file with values for its arguments as NAME:=VALUE. To plan a chip for a
-    launch file, its packages need not be installed: --plan spreads all of its nodes over the
-    clusters, and 'map check' and 'map show' take them. Of an application that only a profile
-    describes, the profile is the single source.
+    Its clusters are a proposal: nodes that exchange messages share one. SOURCES are Python
+    files, directories of them, and at most one launch file with values for its arguments as
+    NAME:=VALUE. To plan a chip for a launch file, its packages need not be installed: --plan
+    gives each of its nodes a core, and 'map check' and 'map show' take them. Of an application
+    that only a profile describes, the profile is the single source.
     """
     if len(sources) == 1 and sources[0].endswith(".json"):
         text = plan_of(load(Path(sources[0])), platform_shape(profile))
