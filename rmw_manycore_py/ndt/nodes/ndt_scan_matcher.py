@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from functools import partial
 from typing import Any
 
@@ -64,18 +65,23 @@ class NdtScanMatcher(Node):
     """
 
     def __init__(self) -> None:
+        # At shutdown, newer releases of rclpy destroy nodes whose construction is under way.
+        self._to_close = ExitStack()
         super().__init__("ndt_scan_matcher")
         self._p = declare(self, MatcherParameters)
         self._own = declare(self, OwnParameters)
         options = matcher_options(self._p, self._own)
         self._matcher = make_matcher(options, self._own.worker_cpus)
+        self._to_close.callback(self._matcher.close)
         schedule_in_real_time(self._own.realtime_priority, self._matcher.worker_pids)
         self._tracking = self._make_tracking()
+        self._to_close.callback(self._tracking.close)
         self._memory = ClusterMemory(self, self._matcher)
         self._trace = MatchingTrace(self, self._matcher)
         self._map = MapSupply(
             self, options, self._p, self._own, self._match_to, lambda: self._thread.wake()
         )
+        self._to_close.callback(self._map.close)
         self._frames = FrameTree()
         self._scan_points = ScanPoints(self._p, self._own, self._frames)
         self._is_activated = self._own.activated or self._tracking.was_activated
@@ -102,6 +108,7 @@ class NdtScanMatcher(Node):
             lambda: not self.context.ok(),
             rclpy.try_shutdown,
         )
+        self._to_close.callback(self._thread.close)
         self._listen()
         AlignServices(
             self,
@@ -140,11 +147,8 @@ class NdtScanMatcher(Node):
     def destroy_node(self) -> None:
         """Release map and workers; raise the error that ended the matching thread, if any."""
         try:
-            self._thread.close()
+            self._to_close.close()
         finally:
-            self._tracking.close()
-            self._map.close()
-            self._matcher.close()
             super().destroy_node()
 
     def _on_guess(self, T_map_base: Matrix) -> None:

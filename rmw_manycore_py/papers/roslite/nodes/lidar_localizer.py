@@ -66,6 +66,10 @@ class LidarLocalizer(Node):
     """
 
     def __init__(self) -> None:
+        # At shutdown, newer releases of rclpy destroy nodes whose construction is under way.
+        self._woken = threading.Condition()
+        self._ends = False
+        self._thread = threading.Thread(target=self._align_all, name="alignment")
         super().__init__("lidar_localizer")
         self._p = declare(self, LocalizerParameters)
         self._complain = ThrottledLog(self.get_logger().warning)
@@ -73,11 +77,8 @@ class LidarLocalizer(Node):
         self._remote = RemotePass(self._ask, self._p.derivatives, self._p.timeout_s)
         self._prediction: Prediction | None = None
         self._scan: Any = None
-        self._woken = threading.Condition()
-        self._ends = False
         self._advertise()
         self._subscribe()
-        self._thread = threading.Thread(target=self._align_all, name="alignment")
         self._thread.start()
 
     def destroy_node(self) -> None:
@@ -85,7 +86,8 @@ class LidarLocalizer(Node):
         with self._woken:
             self._ends = True
             self._woken.notify()
-        self._thread.join()
+        if self._thread.is_alive():
+            self._thread.join()
         super().destroy_node()
 
     def _advertise(self) -> None:
