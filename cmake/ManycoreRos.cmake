@@ -1,6 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
-# Defines `manycore_ros`: headers and libraries of the user's ROS 2.
+# Defines `manycore_ros`: headers and libraries of the user's ROS 2; and `ros_share`, the directory
+# of its packages' files.
 #
 # In a sourced ROS 2 install (including colcon builds) packages are found by their ament exports.
 # The wheels lack ament_cmake and other dependencies of their exports, so plain paths are used
@@ -24,6 +25,7 @@ if(DEFINED ENV{AMENT_PREFIX_PATH} AND NOT SKBUILD)
     find_package(${package} REQUIRED)
     target_link_libraries(manycore_ros INTERFACE ${package}::${package})
   endforeach()
+  get_filename_component(ros_share ${rmw_DIR}/../.. ABSOLUTE)
   return()
 endif()
 
@@ -44,6 +46,7 @@ if(NOT MANYCORE_ROS_INCLUDE)
     "setup file of a ROS 2 install, or build without the RMW (-DMANYCORE_BUILD_RMW=OFF).")
 endif()
 get_filename_component(ros_prefix ${MANYCORE_ROS_INCLUDE} DIRECTORY)
+set(ros_share ${ros_prefix}/share)
 message(STATUS "ROS 2: ${ros_prefix}")
 
 target_include_directories(manycore_ros SYSTEM INTERFACE ${ros_prefix}/include)

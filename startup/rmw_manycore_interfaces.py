@@ -4,13 +4,15 @@
 `rmw_manycore.pth` calls `find()` in every Python process if such packages exist. A package found
 anywhere else takes precedence. See docs/design/interfaces.md.
 
-Imports only what Python has already imported: this runs before everything else.
+Imports only what Python has already imported, and constants: this runs before everything else.
 """
 
 from __future__ import annotations
 
 import os
 import sys
+
+import rmw_manycore_distribution
 
 TYPE_CHECKING = False  # type checkers treat it as typing.TYPE_CHECKING
 if TYPE_CHECKING:
@@ -20,7 +22,6 @@ if TYPE_CHECKING:
 
 DIRECTORY_VARIABLE = "MANYCORE_INTERFACES"
 AMENT_PREFIX_PATH = "AMENT_PREFIX_PATH"
-ROS_DISTRIBUTION = "jazzy"
 MANIFEST = "manifest.json"
 
 
@@ -38,7 +39,7 @@ def directory() -> str:
 def own_directory() -> str:
     """Return the directory of packages for this Python, its ABI and this ROS distribution."""
     python = f"{sys.implementation.cache_tag}{sys.abiflags}"
-    return f"{directory()}/{ROS_DISTRIBUTION}-{python}-{os.uname().machine}"
+    return f"{directory()}/{rmw_manycore_distribution.NAME}-{python}-{os.uname().machine}"
 
 
 def own_prefix() -> str:

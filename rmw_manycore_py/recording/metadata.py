@@ -11,6 +11,7 @@ from typing import Any
 
 import yaml
 
+from rmw_manycore_distribution import NAME
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.definitions import NO_SCHEMA, Schema
@@ -20,7 +21,6 @@ from rmw_manycore_py.recording.plain_yaml import dump
 FILE_NAME = "metadata.yaml"
 _ROOT = "rosbag2_bagfile_information"
 _VERSION = 9
-_DISTRO = "jazzy"  # of the wheels
 _RECORD = "rosbag2"  # name of the metadata record in an MCAP file
 
 
@@ -78,7 +78,7 @@ def information(file_name: str, rows: Sequence[TopicRow], span: Span) -> dict[st
             }
         ],
         "custom_data": {},
-        "ros_distro": os.environ.get("ROS_DISTRO") or _DISTRO,
+        "ros_distro": os.environ.get("ROSNAME") or NAME,
     }
 
 
@@ -133,7 +133,7 @@ def own_metadata(records: Mapping[str, Mapping[str, str]]) -> dict[str, Any]:
     except Exception:  # the messages can be read without it
         found = None
     # A file that rosbag2 has not finished has only the distribution.
-    distro = {"ros_distro": record["ROS_DISTRO"]} if "ROS_DISTRO" in record else {}
+    distro = {"ros_distro": record["ROSNAME"]} if "ROSNAME" in record else {}
     return {**distro, **(found if isinstance(found, dict) else {})}
 
 

@@ -39,3 +39,15 @@ def test_publish_and_take_have_handle_message_and_time(start, tracepoints) -> No
     assert published[1] in re.findall(r"^publisher_init (\S+) [1-9]", talker.output, re.M)
     taken = listener.wait_for(r"^take (\S+) 1 [1-9]\d{17,} 1$")
     assert taken[1] in re.findall(r"^subscription_init (\S+) [1-9]", listener.output, re.M)
+
+
+def test_requests_and_responses_have_handle_client_and_number(start, tracepoints) -> None:
+    """The tracepoints that libtracetools has since Kilted."""
+    preload = {"LD_PRELOAD": str(tracepoints)}
+    lamp = start(example_command("lamp"), **preload)
+    switch = start(example_command("lamp_switch"), **preload)
+    sent = switch.wait_for(r"^send_request (\S+) 1 ([1-9]\d*)$")
+    assert sent[1] in re.findall(r"^client_init (\S+) [1-9]", switch.output, re.M)
+    taken = lamp.wait_for(rf"^take_request (\S+) 1 [1-9]\d* {sent[2]} 1$")
+    lamp.wait_for(rf"^send_response {taken[1]} 1 [1-9]\d* {sent[2]} [1-9]\d{{17,}}$")
+    switch.wait_for(rf"^take_response {sent[1]} 1 {sent[2]} [1-9]\d{{17,}} 1$")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import rmw_manycore_distribution
 import rmw_manycore_interfaces
 from support.installs.python_prefix import Prefix
 
@@ -108,7 +109,9 @@ def test_where_packages_are_kept(
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
     assert rmw_manycore_interfaces.directory() == place
-    assert rmw_manycore_interfaces.own_directory().startswith(f"{place}/jazzy-cpython-")
+    assert rmw_manycore_interfaces.own_directory().startswith(
+        f"{place}/{rmw_manycore_distribution.NAME}-cpython-"
+    )
 
 
 def describe(prefix: Path, type_name: str, hash_string: str) -> None:

@@ -158,7 +158,8 @@ bool Lending::convert(MessageType & type, PyObject * object, void * message) {
   for (const Large & large : buffers.all) {
     const size_t count =
       static_cast<size_t>(large.view.len) / as_array(large.field->empty).description->item_bytes;
-    type.interface.lend(message, large.field->offset, large.view.buf, count);
+    const Field & field = *large.field;
+    type.interface.lend(message, field.offset, field.typecode(), large.view.buf, count);
   }
   kept = std::move(buffers);
   return true;
@@ -170,7 +171,7 @@ void Lending::take_back(const MessageType & type, void * message) noexcept {
     return;
   }
   for (const Large & large : found->second.all) {
-    type.interface.lend(message, large.field->offset, nullptr, 0);
+    type.interface.lend(message, large.field->offset, large.field->typecode(), nullptr, 0);
   }
   lent().erase(found);
 }

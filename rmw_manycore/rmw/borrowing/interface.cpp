@@ -50,21 +50,45 @@ size_t offset_of(const void * type_support, const char * path, char typecode) no
   return SIZE_MAX;
 }
 
-/// Sequences of all numbers have the same layout.
-void lend(void * message, size_t offset, void * data, size_t count) noexcept {
-  auto & sequence = *reinterpret_cast<rosidl_runtime_c__uint8__Sequence *>(
-    static_cast<uint8_t *>(message) + offset);
-  sequence.data = static_cast<uint8_t *>(data);
+template<typename Sequence>
+void refer(void * place, void * data, size_t count) noexcept {
+  Sequence sequence{};  // further members, which some distributions have, are those of an empty one
+  sequence.data = static_cast<decltype(sequence.data)>(data);
   sequence.size = count;
   sequence.capacity = count;
+  *static_cast<Sequence *>(place) = sequence;
 }
 
-template<typename Sequence>
-constexpr bool is_laid_out_alike =
-  offsetof(Sequence, data) == 0 && offsetof(Sequence, size) == sizeof(void *) &&
-  offsetof(Sequence, capacity) == 2 * sizeof(void *);
-static_assert(is_laid_out_alike<rosidl_runtime_c__uint8__Sequence>);
-static_assert(is_laid_out_alike<rosidl_runtime_c__double__Sequence>);
+/// By type code of array.array.
+using Refer = void (*)(void *, void *, size_t) noexcept;
+Refer refer_of(char typecode) noexcept {
+  switch (typecode) {
+    case 'f':
+      return refer<rosidl_runtime_c__float__Sequence>;
+    case 'd':
+      return refer<rosidl_runtime_c__double__Sequence>;
+    case 'b':
+      return refer<rosidl_runtime_c__int8__Sequence>;
+    case 'h':
+      return refer<rosidl_runtime_c__int16__Sequence>;
+    case 'H':
+      return refer<rosidl_runtime_c__uint16__Sequence>;
+    case 'i':
+      return refer<rosidl_runtime_c__int32__Sequence>;
+    case 'I':
+      return refer<rosidl_runtime_c__uint32__Sequence>;
+    case 'q':
+      return refer<rosidl_runtime_c__int64__Sequence>;
+    case 'Q':
+      return refer<rosidl_runtime_c__uint64__Sequence>;
+    default:
+      return refer<rosidl_runtime_c__uint8__Sequence>;
+  }
+}
+
+void lend(void * message, size_t offset, char typecode, void * data, size_t count) noexcept {
+  refer_of(typecode)(static_cast<uint8_t *>(message) + offset, data, count);
+}
 
 constexpr BorrowingInterface functions{adopt,  forget,    borrowed,  take_hold,
                                        access, give_back, offset_of, lend};
@@ -74,6 +98,6 @@ constexpr BorrowingInterface functions{adopt,  forget,    borrowed,  take_hold,
 
 // NOLINTNEXTLINE(readability-identifier-naming): exported like the rmw interface
 extern "C" __attribute__((visibility("default"))) const rmw_manycore::BorrowingInterface *
-rmw_manycore_borrowing_2() {
+rmw_manycore_borrowing_3() {
   return &rmw_manycore::functions;
 }

@@ -46,11 +46,12 @@ struct BorrowingInterface {
   /// Place of a sequence in messages of a type (rosidl_message_type_support_t), SIZE_MAX if it has
   /// no such sequence with elements of this type code.
   size_t (*offset_of)(const void * type_support, const char * path, char typecode) noexcept;
-  /// Lets an empty sequence of a message refer to elements of the caller; null takes them back.
-  void (*lend)(void * message, size_t offset, void * data, size_t count) noexcept;
+  /// Lets an empty sequence of a message, with elements of this type code, refer to elements of the
+  /// caller; null takes them back.
+  void (*lend)(void * message, size_t offset, char typecode, void * data, size_t count) noexcept;
 };
 
-constexpr char borrowing_function[] = "rmw_manycore_borrowing_2";
+constexpr char borrowing_function[] = "rmw_manycore_borrowing_3";
 using BorrowingFunction = const BorrowingInterface * (*)();
 
 }  // namespace rmw_manycore

@@ -25,6 +25,11 @@ Tracepoints find_all() noexcept {
   find(found.publish, library, "ros_trace_rmw_publish");
   find(found.subscription_init, library, "ros_trace_rmw_subscription_init");
   find(found.take, library, "ros_trace_rmw_take");
+  find(found.client_init, library, "ros_trace_rmw_client_init");
+  find(found.send_request, library, "ros_trace_rmw_send_request");
+  find(found.take_request, library, "ros_trace_rmw_take_request");
+  find(found.send_response, library, "ros_trace_rmw_send_response");
+  find(found.take_response, library, "ros_trace_rmw_take_response");
   return found;
 }
 

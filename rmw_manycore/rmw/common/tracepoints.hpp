@@ -15,6 +15,19 @@ struct Tracepoints {
   /// `source_timestamp_ns` is 0 if the caller did not ask for message info.
   void (*take)(
     const void * subscription, const void * message, int64_t source_timestamp_ns, bool taken);
+
+  // Since Kilted. `client_gid` identifies the client in all of them.
+  void (*client_init)(const void * client, const uint8_t * client_gid);
+  void (*send_request)(const void * client, const void * request, int64_t number);
+  void (*take_request)(
+    const void * service, const void * request, const uint8_t * client_gid, int64_t number,
+    bool taken);
+  void (*send_response)(
+    const void * service, const void * response, const uint8_t * client_gid, int64_t number,
+    int64_t timestamp_ns);
+  void (*take_response)(
+    const void * client, const void * response, int64_t number, int64_t source_timestamp_ns,
+    bool taken);
 };
 
 /// Resolved on the first call.

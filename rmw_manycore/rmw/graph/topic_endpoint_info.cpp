@@ -1,10 +1,9 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-
 #include "rcpputils/scope_exit.hpp"
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
 #include "rmw/get_topic_endpoint_info.h"
+#include "rmw/graph/endpoint_info.hpp"
 #include "rmw/graph/topic_endpoints.hpp"
 #include "rmw/qos/qos.hpp"
 #include "rmw/topic_endpoint_info_array.h"
@@ -14,13 +13,6 @@ namespace {
 
 using manycore::EndpointInfo;
 using manycore::NodeInfo;
-
-rosidl_type_hash_t to_rosidl(const manycore::TypeHash & hash) {
-  rosidl_type_hash_t result = rosidl_get_zero_initialized_type_hash();
-  result.version = hash.version;
-  std::copy(hash.value.begin(), hash.value.end(), result.value);
-  return result;
-}
 
 void write(
   const EndpointInfo & endpoint, const NodeInfo & node, rcutils_allocator_t & allocator,
@@ -36,19 +28,6 @@ void write(
   check(rmw_topic_endpoint_info_set_gid(&info, endpoint.gid.data(), endpoint.gid.size()));
   const rmw_qos_profile_t profile = to_rmw(endpoint.qos);
   check(rmw_topic_endpoint_info_set_qos_profile(&info, &profile));
-}
-
-/// The node may have been removed between the two graph reads; its name is then unknown.
-NodeInfo find_node(const std::vector<NodeInfo> & nodes, uint32_t handle) {
-  const auto found = std::find_if(
-    nodes.begin(), nodes.end(), [&](const NodeInfo & node) { return node.handle == handle; });
-  if (found != nodes.end()) {
-    return *found;
-  }
-  NodeInfo unknown;
-  unknown.name = "_NODE_NAME_UNKNOWN_";
-  unknown.ns = "_NODE_NAMESPACE_UNKNOWN_";
-  return unknown;
 }
 
 void write(

@@ -4,6 +4,7 @@
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
 #include "rmw/common/names.hpp"
+#include "rmw/common/tracepoints.hpp"
 #include "rmw/qos/qos.hpp"
 #include "rmw/rmw.h"
 #include "rmw/topics/endpoint_spec.hpp"
@@ -48,10 +49,13 @@ rmw_client_t * rmw_create_client(
   return rmw_manycore::guarded_handle([&] {
     rmw_manycore::check_endpoint_name(service_name, *qos_policies);
     auto type = rmw_manycore::ServiceType::of(type_support);
-    return &(new Client(
-               rmw_manycore::Node::of(node), std::move(type), service_name,
-               rmw_manycore::best_available_for_service(*qos_policies)))
-              ->handle;
+    auto & made = *new Client(
+      rmw_manycore::Node::of(node), std::move(type), service_name,
+      rmw_manycore::best_available_for_service(*qos_policies));
+    if (const auto init = rmw_manycore::tracepoints().client_init) {
+      init(&made.handle, made.gid().data());
+    }
+    return &made.handle;
   });
 }
 

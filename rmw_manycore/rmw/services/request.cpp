@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
+#include "rmw/common/tracepoints.hpp"
 #include "rmw/rmw.h"
 #include "rmw/services/client.hpp"
 #include "rmw/services/service.hpp"
@@ -22,6 +23,9 @@ rmw_ret_t rmw_send_request(
     manycore::Draft draft = asking.requests().draft(cdr.size_bound(ros_request));
     const size_t size = cdr.serialize(ros_request, draft.data(), draft.capacity());
     const manycore::Correlation correlation = asking.next_request();
+    if (const auto send = rmw_manycore::tracepoints().send_request) {
+      send(client, ros_request, correlation.number);
+    }
     asking.requests().publish(std::move(draft), size, now_ns, correlation);
     *sequence_id = correlation.number;
     return RMW_RET_OK;
@@ -41,9 +45,14 @@ rmw_ret_t rmw_take_request(
   *taken = false;
   return rmw_manycore::guarded([&] {
     auto & serving = rmw_manycore::Service::of(service);
-    if (const auto info = serving.requests().take(serving.type().request, ros_request)) {
+    const auto info = serving.requests().take(serving.type().request, ros_request);
+    if (info) {
       *request_header = rmw_manycore::to_service_info(*info);
       *taken = true;
+    }
+    if (const auto traced = rmw_manycore::tracepoints().take_request) {
+      const manycore::Correlation from = info ? info->correlation : manycore::Correlation{};
+      traced(service, ros_request, from.client.data(), from.number, *taken);
     }
     return RMW_RET_OK;
   });

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import rmw_manycore_hook
+from rmw_manycore_distribution import NAME, RCLPY_VERSION
 from rmw_manycore_program import own_program
 from rmw_manycore_py.cli.doctor.built import check_built
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
@@ -21,7 +22,6 @@ from rmw_manycore_py.ros.ament import prefixes
 
 MIN_PYTHON = (3, 10)
 ROS_PACKAGE = "ros-rclpy"
-ROS_VERSION = "7.1."  # rclpy of Jazzy
 REINSTALL = "pip install --force-reinstall --no-deps rmw-manycore"
 START_TIMEOUT_S = 60
 FILES = {
@@ -55,21 +55,22 @@ def _python() -> Finding:
 
 
 def check_ros() -> Finding:
-    """Return whether ROS 2 is Jazzy, and one alone."""
+    """Return whether ROS 2 is the distribution of this build, and one alone."""
+    advice = f'pip install "ros-rclpy[fastrtps]=={RCLPY_VERSION}"'
     try:
         version = importlib.metadata.version(ROS_PACKAGE)
     except importlib.metadata.PackageNotFoundError:
         distribution = os.environ.get("ROS_DISTRO", "none")
         found = f"no wheels; sourced installation: {distribution}"
-        advice = 'pip install "ros-rclpy[fastrtps]==7.1.6" ros-jazzy-common-interfaces'
-        return judged("ROS 2", distribution == "jazzy", found, advice)
+        advice = f"{advice} ros-{NAME}-common-interfaces"
+        return judged("ROS 2", distribution == NAME, found, advice)
     found = f"wheels, {ROS_PACKAGE} {version}"
     if sourced := os.environ.get("ROS_DISTRO"):
         found += f", and a sourced {sourced}: programs load libraries of both"
-        advice = "put rmw_manycore beside it without the wheels: docs/how-to/ros2_apt.md"
-        return Finding("ROS 2", Verdict.WARNING, found, advice)
-    advice = 'pip install "ros-rclpy[fastrtps]==7.1.6"'
-    return judged("ROS 2", version.startswith(ROS_VERSION), found, advice)
+        beside = "put rmw_manycore beside it without the wheels: docs/how-to/ros2_apt.md"
+        return Finding("ROS 2", Verdict.WARNING, found, beside)
+    is_own = version.split(".")[:2] == RCLPY_VERSION.split(".")[:2]
+    return judged("ROS 2", is_own, found, advice)
 
 
 def _files() -> Iterator[Finding]:

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from rmw_manycore_distribution import NAME
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext
 from rmw_manycore_py.mapfile.launch_file.elements import read_xml, read_yaml_elements
@@ -21,7 +22,7 @@ from rmw_manycore_py.mapfile.launch_file.refusals import LaunchFileError
 from rmw_manycore_py.mapfile.launch_file.stand_ins import install_stand_ins
 
 # Variables of a sourced ROS 2 that launch files read; the wheels need no sourcing.
-_ROS_ENVIRONMENT = {"ROS_DISTRO": "jazzy", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
+_ROS_ENVIRONMENT = {"ROS_DISTRO": NAME, "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
 
 FRONTENDS.update(
     {

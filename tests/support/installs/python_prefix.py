@@ -12,7 +12,10 @@ from pathlib import Path
 import rmw_manycore_hook as hook
 from support import TIMEOUT_S
 
-STARTUP = ("arrays", "executor", "fields", "hook", "interfaces", "loading", "program")
+STARTUP = (
+    *("arrays", "distribution", "executor", "fields", "hook", "interfaces", "loading"),
+    "program",
+)
 SHOW = (
     "import json, os, sys; print(json.dumps({'environ': dict(os.environ), 'argv': sys.argv,"
     "'orig_argv': sys.orig_argv[1:], 'flags': sys.flags.utf8_mode, 'path': sys.path,"

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from rmw_manycore_distribution import NAME
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.launch_file import LaunchFile, read_launch_file
 
@@ -242,7 +243,7 @@ def test_the_environment_is_that_of_a_sourced_ros(
     launch = read(
         tmp_path, f"node(EnvironmentVariable('{name}')), node(os.environ['{name}'] + '_')"
     )
-    expected = {"ROS_DISTRO": "jazzy", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}[name]
+    expected = {"ROS_DISTRO": NAME, "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}[name]
     assert [node.name for node in launch.nodes] == [expected, f"{expected}_"]
     assert name not in os.environ
 
