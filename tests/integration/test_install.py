@@ -27,7 +27,17 @@ pytestmark = [pytest.mark.integration, pytest.mark.long]
 BUILT_MESSAGES = {path.name for path in (REPOSITORY / "interfaces").iterdir()}
 STAND_INS = {"librmw_fastrtps_cpp.so", "librmw_fastrtps_shared_cpp.so", "libfastrtps.so.2.14"}
 ROS_LIBRARY = re.compile(r"lib(rmw|rcl|rcutils|rcpputils|rosidl_|fastcdr|fastrtps|tracetools)\w*\.")
-STARTUP = ("arrays", "executor", "fields", "hook", "interfaces", "loading", "program", "receive")
+STARTUP = (
+    "arrays",
+    "executor",
+    "fields",
+    "hook",
+    "interfaces",
+    "loading",
+    "program",
+    "receive",
+    "distribution",
+)
 
 
 def pythons() -> Iterator[Path]:

@@ -44,7 +44,7 @@ std::string version_of_rmw(const std::string & prefix) {
 __attribute__((constructor)) void require_own_distribution() {
   const std::string prefix = prefix_of_rmw();
   const std::string version = version_of_rmw(prefix) + ".";
-  const std::string own = MANYCORE_RMW_VERSION;
+  const std::string own = RMW_OF_DISTRIBUTION;
   if (version != "." && version.rfind(own + ".", 0) != 0) {
     std::fprintf(
       stderr,

@@ -259,9 +259,7 @@ Crossings = Annotated[dict[TopicPattern, InterfaceType | None], AfterValidator(_
 class HostSection(Section):
     """A host that has clusters of the platform."""
 
-    clusters: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
-        description="Numbers of its clusters"
-    )
+    clusters: tuple[Positive, ...] = Field(min_length=1, description="Numbers of its clusters")
     address: Locator = Field(description="Where the other hosts reach it, as tcp/10.0.0.1:7450")
 
 
@@ -392,9 +390,7 @@ class MapfileSections(Section):
         description="Keep glibc from returning memory to the system after each message",
     )
     bridge: BridgeSection = Field(default=BridgeSection(), description="Bridge to external domains")
-    hosts: dict[HostName, HostSection] = Field(
-        default_factory=dict, description="Hosts by name, for manycore run --host"
-    )
+    hosts: dict[HostName, HostSection] = Field({}, description="For manycore run --host, by name")
     topics: dict[TopicName, TopicSection] = Field(
         default_factory=dict, description="Topics with a fixed type, topic DSM size or transfer"
     )

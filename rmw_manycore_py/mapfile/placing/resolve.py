@@ -104,14 +104,9 @@ def _placement(
     placed = Placed(mapfile, nodes, occupied)
     ring_problems = [*check_rings(mapfile)]
     room_problems = [*worker_problems, *([] if ring_problems else check_room(placed, memory))]
-    problems = [
-        *check_types(mapfile, topics),
-        *check_crossing_types(mapfile, starts, topics),
-        *import_problems,
-        *ring_problems,
-        *room_problems,
-        *check_sessions(mapfile, topics),
-    ]
+    problems = [*check_types(mapfile, topics), *check_crossing_types(mapfile, starts, topics)]
+    problems += [*import_problems, *ring_problems, *room_problems]
+    problems += check_sessions(mapfile, topics)
     if room_problems:
         raise RoomError(problems, Advice.of(placed))
     if problems:
