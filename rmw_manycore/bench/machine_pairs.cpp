@@ -3,8 +3,8 @@
 //
 //   machine_pairs what=line|copy cpus=A,B[,C..] bytes=N iterations=N
 //
-// line: each two of the CPUs pass one cache line to and fro; a sample is one way, the mean of all
-// passes. copy: the first CPU writes a buffer, the second copies it; a sample is one copy.
+// line: each two of the CPUs pass one cache line back and forth; a sample is one way, the mean of
+// all passes. copy: the first CPU writes a buffer, the second copies it; a sample is one copy.
 #include <algorithm>
 #include <atomic>
 #include <cstring>

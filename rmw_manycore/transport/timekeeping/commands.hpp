@@ -16,7 +16,7 @@ struct Command {
     hold,    ///< `hold`: time stands
     resume,  ///< `resume NS TOPIC`: it goes on, for NS (0: without end; -1: to what is due next),
              ///< or until something is published on TOPIC, which may lack
-    over,  ///< `over`, or the end of the input: from here on time is the wall clock's
+    over,    ///< `over`, or the end of the input: from here on time is the wall clock's
   };
   Kind kind;
   uint32_t rank = 0;

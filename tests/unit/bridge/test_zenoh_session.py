@@ -60,7 +60,7 @@ def test_a_message_that_zenoh_refuses_is_an_error_of_the_outside(zenoh) -> None:
     publisher = outside.publish(CHAT, Qos())
     publish(publisher)
     outside.close()
-    with pytest.raises(OutsideError, match="clos"):
+    with pytest.raises(OutsideError, match="closed"):
         publish(publisher)
 
 
