@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -40,12 +41,14 @@ std::vector<std::string> command_line() {
   return words;
 }
 
-/// Of Python code that begins with one, in three double quotes.
+/// First line of that of Python code, in three double quotes.
 std::string docstring(const std::string & code) {
   const std::string quotes = "\"\"\"";
   const size_t end = code.find(quotes, quotes.size());
   const bool begins = code.compare(0, quotes.size(), quotes) == 0 && end != std::string::npos;
-  return begins ? code.substr(quotes.size(), end - quotes.size()) : "";
+  const std::string text = begins ? code.substr(quotes.size(), end - quotes.size()) : "";
+  const size_t first = std::min(text.find_first_not_of(" \t\n"), text.size());
+  return text.substr(first, text.find('\n', first) - first);
 }
 
 }  // namespace

@@ -10,22 +10,24 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 
 namespace manycore {
 namespace {
 
-/// Text of a small file of proc(5); empty if its thread has ended.
-std::string read_all(const FileDescriptor & file) {
+/// Text of a small file of proc(5): empty if this process may not read it, nothing if its thread
+/// has ended.
+std::optional<std::string> read_all(const FileDescriptor & file) {
   std::array<char, 256> text;
   const ssize_t size = pread(file.get(), text.data(), text.size(), 0);
-  return {text.data(), size > 0 ? static_cast<size_t>(size) : 0};
-}
-
-bool has_ended(const ProcessThreads::Files & files) {
-  return files.call && read_all(files.call).empty();
+  if (size < 0 && errno == ESRCH) {
+    return std::nullopt;
+  }
+  return std::string(text.data(), size > 0 ? static_cast<size_t>(size) : 0);
 }
 
 bool contains(const std::vector<pid_t> & all, pid_t one) {
@@ -104,13 +106,18 @@ void ProcessThreads::list_again() {
     const pid_t tid = std::atoi(entry->d_name);
     const std::string files = directory_ + "/" + entry->d_name;
     const auto known = threads_.find(tid);
-    if (known != threads_.end() && !has_ended(known->second)) {
+    if (known != threads_.end() && read_all(known->second.call)) {
       now[tid] = std::move(known->second);
     } else if (tid > 0) {
       const auto file = [&](const char * name) {
         return FileDescriptor(open((files + name).c_str(), O_RDONLY | O_CLOEXEC));
       };
-      now[tid] = {file("/syscall"), file("/schedstat")};
+      Files opened{file("/syscall"), file("/schedstat")};
+      if (opened.call) {
+        now[tid] = std::move(opened);
+      } else if (errno == ENOENT || errno == ESRCH) {
+        count_ = 0;  // it has ended; another thread may have begun since
+      }
     }
   }
   threads_ = std::move(now);
@@ -122,16 +129,19 @@ ProcessThreads::Look ProcessThreads::look_once(
     if (contains(blocked, tid)) {
       continue;
     }
-    const std::string text = read_all(files.call);
-    if (text.empty() && files.call) {
+    const std::optional<std::string> text = read_all(files.call);
+    if (!text) {
       count_ = 0;  // another thread may have begun since: the list is made again
       return {false, 0, ""};
     }
-    const Call call = parse(text);
+    if (text->empty()) {
+      continue;  // Yama hides it: taken to sleep
+    }
+    const Call call = parse(*text);
     if (!is_sleep(call, contains(strict, tid))) {
       return {false, tid, call.number < 0 ? "" : name_of(call)};
     }
-    seen += text + read_all(files.turns);
+    seen += *text + read_all(files.turns).value_or("");
   }
   return {};
 }

@@ -12,7 +12,7 @@ from rmw_manycore_py.cli.common.options import examples, platform_option
 @click.command("pause", epilog=examples("manycore pause", "manycore pause --platform domain-3"))
 @platform_option
 def command(platform: str) -> None:
-    """Let the virtual time of a run stand.
+    """Pause the virtual time of a run.
 
     The nodes that compute go on until they wait. `manycore step` and `manycore resume` let time go
     on. Only for runs in virtual time.

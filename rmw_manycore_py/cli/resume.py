@@ -12,7 +12,7 @@ from rmw_manycore_py.cli.common.options import examples, platform_option
 @click.command("resume", epilog=examples("manycore resume", "manycore resume --platform domain-3"))
 @platform_option
 def command(platform: str) -> None:
-    """Let the virtual time of a run go on.
+    """Resume the virtual time of a run.
 
     After `manycore pause` or `manycore step`.
     """

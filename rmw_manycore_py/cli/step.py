@@ -8,6 +8,8 @@ import click
 from rmw_manycore_py.cli.common.holding import ask_for_time
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.seconds import Seconds
+from rmw_manycore_py.launch.requests import MAX_STEP_S
+from rmw_manycore_py.ros.names import expand
 
 
 @click.command(
@@ -24,5 +26,8 @@ def command(for_s: float | None, topic: str, platform: str) -> None:
     look at topics, parameters or a debugger as long as you like. With both options, until the first
     of both.
     """
+    if for_s is not None and for_s > MAX_STEP_S:
+        raise click.UsageError(f"--for: expected at most {MAX_STEP_S:g} s.")
+    topic = topic and expand(topic, "/")
     single = for_s is None and not topic
     ask_for_time(platform, "resume", waits=True, for_s=for_s, topic=topic, single=single)

@@ -123,6 +123,10 @@ class Task:
             core = Core(move.cluster, move.core)
             if owner := self._owner(core, move.name):
                 raise ManycoreError(f"{core} is that of '{owner}': move it first", EXIT_BAD_INPUT)
+        own = mapfile.own_clusters
+        if own is not None and move.cluster not in own:
+            text = f"cluster {move.cluster} is of another host than '{mapfile.host}'"
+            raise ManycoreError(text, EXIT_BAD_INPUT)
         place = {"cluster": move.cluster, "core": move.core}
         moved = mapfile.with_nodes({**nodes, move.name: nodes[move.name].model_copy(update=place)})
         if problems := [*check_placement(moved)]:

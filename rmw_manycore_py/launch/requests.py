@@ -11,6 +11,7 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    StringConstraints,
     TypeAdapter,
     ValidationError,
 )
@@ -18,6 +19,8 @@ from typing_extensions import Self
 
 from rmw_manycore_py.errors import ManycoreError, shorten
 from rmw_manycore_py.launch.runs.lines import Message
+
+MAX_STEP_S = 1e9  # its nanoseconds fit with the time that has passed
 
 _MAX_KEY, _MAX_FOUND = 40, 100
 
@@ -94,8 +97,8 @@ class Resume(_Strict):
     """Let virtual time go on, until it stands again if one of these is given."""
 
     do: Literal["resume"]
-    for_s: Annotated[float, Field(gt=0)] | None = None
-    topic: str = ""
+    for_s: Annotated[float, Field(gt=0, le=MAX_STEP_S)] | None = None
+    topic: Annotated[str, StringConstraints(pattern=r"^(/[A-Za-z0-9_/]+)?$")] = ""
     single: bool = False  # to what is due next
 
     @property

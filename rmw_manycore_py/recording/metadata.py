@@ -78,7 +78,7 @@ def information(file_name: str, rows: Sequence[TopicRow], span: Span) -> dict[st
             }
         ],
         "custom_data": {},
-        "ros_distro": os.environ.get("ROSNAME") or NAME,
+        "ros_distro": os.environ.get("ROS_DISTRO") or NAME,
     }
 
 
@@ -133,7 +133,7 @@ def own_metadata(records: Mapping[str, Mapping[str, str]]) -> dict[str, Any]:
     except Exception:  # the messages can be read without it
         found = None
     # A file that rosbag2 has not finished has only the distribution.
-    distro = {"ros_distro": record["ROSNAME"]} if "ROSNAME" in record else {}
+    distro = {"ros_distro": record["ROS_DISTRO"]} if "ROS_DISTRO" in record else {}
     return {**distro, **(found if isinstance(found, dict) else {})}
 
 

@@ -1,8 +1,10 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "ndt/kernel/evidence.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "ndt/common/matrix.hpp"
@@ -44,7 +46,9 @@ Vector3 mean_of(const VoxelLine & line) {
 }
 
 int32_t cell_along(const MapHeader & map, double place_m, size_t axis) {
-  return static_cast<int32_t>(std::floor(place_m / map.voxel_size_m)) - map.first_cell[axis];
+  constexpr double far = 1e9;  // outside of any map, and its difference to a cell fits
+  const double cell = std::clamp(std::floor(place_m / map.voxel_size_m), -far, far);
+  return static_cast<int32_t>(cell) - map.first_cell[axis];
 }
 
 /// The voxel of the cell itself among those in range of it; null without one.
@@ -139,16 +143,37 @@ bool passes(
   return behind_m * before_m < 0 && std::abs(behind_m) > behind_share * map.voxel_size_m;
 }
 
+/// Shares of a ray between which it is in the map's cells: drivers may give points that are
+/// arbitrarily far.
+std::pair<double, double> part_in_map(
+  const MapHeader & map, const Vector3 & from_m, const Vector3 & ray) {
+  double first = 0;
+  double last = 1;
+  for (size_t i = 0; i < 3; ++i) {
+    const double low_m = map.first_cell[i] * map.voxel_size_m - from_m[i];
+    const double high_m = low_m + map.cells[i] * map.voxel_size_m;
+    if (ray[i] != 0) {
+      const auto [enters, leaves] = std::minmax({low_m / ray[i], high_m / ray[i]});
+      first = std::max(first, enters);
+      last = std::min(last, leaves);
+    } else if (low_m > 0 || high_m < 0) {
+      return {0, 0};
+    }
+  }
+  return {first, last};
+}
+
 bool is_past_map(const MapView & map, const Vector3 & from_m, const Vector3 & to_m) {
   const Vector3 ray = minus(to_m, from_m);
-  const auto steps =
-    static_cast<size_t>(std::sqrt(dot(ray, ray)) * steps_per_voxel / map.header->voxel_size_m);
+  const double steps =
+    std::floor(std::sqrt(dot(ray, ray)) * steps_per_voxel / map.header->voxel_size_m);
+  const auto [first, last_share] = part_in_map(*map.header, from_m, ray);
+  const double end = std::min(std::ceil(last_share * steps) + 1, steps);
   const VoxelLine * last = nullptr;
-  for (size_t step = 1; step < steps; ++step) {
+  for (double step = std::max(std::floor(first * steps), 1.0); step < end; ++step) {
     Cell cell;
     for (size_t i = 0; i < 3; ++i) {
-      const double place_m =
-        from_m[i] + ray[i] * static_cast<double>(step) / static_cast<double>(steps);
+      const double place_m = from_m[i] + ray[i] * step / steps;
       cell[i] = cell_along(*map.header, place_m, i);
     }
     const VoxelLine * const voxel = own_voxel(map, cell);

@@ -24,7 +24,19 @@ void Timekeeper::resume(int64_t duration_ns, const std::string & topic) {
   published_before_ = published();
 }
 
-/// Messages on the topic that time stops at.
+void Timekeeper::hold_if_published() {
+  if (stop_topic_.empty()) {
+    return;
+  }
+  const uint64_t now = published();
+  if (now > published_before_) {
+    hold(stop_topic_ + " was published");
+  } else {
+    published_before_ = now;  // less: one of its publishers has gone
+  }
+}
+
+/// Messages on the topic that time stops at, of the publishers that are there.
 uint64_t Timekeeper::published() const {
   uint64_t sum = 0;
   const auto & endpoints = registry_.endpoints();

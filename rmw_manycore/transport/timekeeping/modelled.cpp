@@ -2,6 +2,8 @@
 // Part of Timekeeper: threads whose steps take the time that the model of the platform says.
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "transport/timekeeping/timekeeper.hpp"
 
@@ -38,14 +40,14 @@ void Timekeeper::ask_model() {
   if (model_ == nullptr) {
     return;
   }
-  std::map<uint64_t, uint32_t> asking;
+  std::map<std::pair<uint64_t, uint32_t>, uint32_t> asking;  // processes of a program share keys
   for (uint32_t i = 0; i < std::min(page_.seat_count.load(), virtual_time::seat_capacity); ++i) {
     const Seat & seat = page_.seats[i];
     const auto known = asked_.find(i);
     const bool asks =
       seat.state.load(std::memory_order_acquire) == seat_waiting && seat.next != Step::none;
     if (asks && (known == asked_.end() || known->second != seat.tid)) {
-      asking[seat.key()] = i;
+      asking[{seat.key(), i}] = i;
     }
   }
   for (const auto & [key, i] : asking) {
@@ -64,7 +66,10 @@ bool Timekeeper::advance_model(int64_t until_ns) {
     return false;
   }
   page_.now_ns.store(start_ns + answer.at_ns, std::memory_order_release);
-  asked_.erase(answer.done->seat);
+  const auto asked = asked_.find(answer.done->seat);
+  if (asked != asked_.end() && asked->second == answer.done->tid) {  // else a successor has asked
+    asked_.erase(asked);
+  }
   Seat & seat = page_.seats[answer.done->seat];
   const bool waits = seat.state.load(std::memory_order_acquire) == seat_waiting;
   if (waits && seat.next != Step::none && seat.tid == answer.done->tid) {

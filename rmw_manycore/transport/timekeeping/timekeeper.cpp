@@ -62,9 +62,7 @@ bool Timekeeper::step() {
     drain();
     ask_model();
     active_.reset();
-    if (!stop_topic_.empty() && published() != published_before_) {
-      hold(stop_topic_ + " was published");
-    }
+    hold_if_published();
     return true;
   }
   for (auto & [rank, program] : programs_) {
@@ -325,6 +323,9 @@ int64_t Timekeeper::next_due_ns() const {
 void Timekeeper::advance() {
   const int64_t next_ns = next_due_ns();
   if (model_ != nullptr && advance_model(std::min({next_ns, end_ns_, stop_ns_}))) {
+    if (is_single_) {
+      hold("something is due");
+    }
     return;
   }
   if (stop_ns_ < std::min(next_ns, end_ns_)) {

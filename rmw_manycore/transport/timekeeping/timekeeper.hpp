@@ -90,6 +90,7 @@ private:
   void finish();
   void hold(const std::string & why);
   void resume(int64_t duration_ns, const std::string & topic);
+  void hold_if_published();
   uint64_t published() const;
 
   /// Sleeps until a seat changes after `seen`, at most `ns`; takes commands.

@@ -48,6 +48,7 @@ int main(int argc, char ** argv) {
     return 2;
   }
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  signal(SIGPIPE, SIG_IGN);  // a model that has ended is an error with a text
   try {
     std::vector<int> model;
     for (int i = 3; i < argc; ++i) {

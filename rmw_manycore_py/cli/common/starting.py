@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import click
 
 from rmw_manycore_py.cli.common.finite_range import FiniteRange
-from rmw_manycore_py.cli.common.options import number_option
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.platform import occupied_cores
 from rmw_manycore_py.launch.run import Mode, Run
@@ -61,6 +61,8 @@ def prepared_run(
         raise ManycoreError(text, EXIT_BAD_INPUT)
     occupied = occupied_cores(loaded.platform_name) if joins else ()
     placement = resolve(loaded, occupied)
+    if joins:  # the run that is there has the links to other hosts
+        placement = replace(placement, links=None)
     return Run(placement, Mode(loaded, joins, detached, bool(nodes), virtual)), placement
 
 
@@ -88,13 +90,13 @@ def virtual_options(command: Callable[..., Any]) -> Callable[..., Any]:
     platform = click.option(
         "--platform",
         "platform_name",
-        default="host",
-        show_default=True,
         metavar="NAME",
-        help="With --profile: host, coolidge, bostan, or a file, as of manycore simulate.",
+        help="With --profile: host (default), coolidge, bostan, or a file.",
     )
-    seed = number_option(
-        "--seed", within=(0, None), default=0, help="With --profile: seed of the random numbers."
+    seed = click.option(
+        "--seed",
+        type=click.IntRange(min=0),
+        help="With --profile: seed of the random numbers, 0 by default.",
     )
     return virtual(instant(factor(profile(platform(seed(command))))))
 
@@ -105,8 +107,8 @@ def virtual_time(
     instant: bool,
     factor: float | None,
     profile: Path | None,
-    platform_name: str,
-    seed: int,
+    platform_name: str | None,
+    seed: int | None,
 ) -> VirtualTime | None:
     """Return what the options of `virtual_options` ask for."""
     given = {"--instant": instant, "--factor": factor is not None, "--profile": bool(profile)}
@@ -115,9 +117,13 @@ def virtual_time(
         raise click.UsageError(f"{' and '.join(names)} exclude each other.")
     if profile is not None:
         require_simpy()
-        target_named(platform_name)
+        simulated = platform_name or "host"
+        target_named(simulated)
         load(profile)
-        return VirtualTime(0.0, PlatformModel(mapfile, profile, platform_name, seed))
+        return VirtualTime(0.0, PlatformModel(mapfile, profile, simulated, seed or 0))
+    if platform_name is not None or seed is not None:
+        text = "--platform and --seed need --profile; $MANYCORE_PLATFORM names the run's platform."
+        raise click.UsageError(text)
     if not (virtual or names):
         return None
     return VirtualTime(0.0 if instant else factor or 1.0)

@@ -24,6 +24,15 @@ _PERIOD_S = 0.2
 _SHOWN = Shown(length=12)  # elements of arrays; strings are cut likewise
 _MAX_SIDE = 320  # pixels of an image
 _MAX_COMPRESSED_BYTES = 1 << 20
+# Fields of sensor_msgs/msg/CompressedImage and Image that are needed, and of other messages like
+# them.
+_COMPRESSED = {"format": "string", "data": "sequence<uint8>"}
+_RAW = {
+    "encoding": "string",
+    "is_bigendian": "uint8",
+    **dict.fromkeys(("height", "width", "step"), "uint32"),
+    "data": "sequence<uint8>",
+}
 # Channels of an encoding that make red, green and blue; see sensor_msgs/image_encodings.hpp.
 _CHANNELS = {"rgb8": (0, 1, 2), "bgr8": (2, 1, 0), "rgba8": (0, 1, 2), "bgra8": (2, 1, 0)}
 _GREY = {"mono8": "u1", "8UC1": "u1", "mono16": "u2", "16UC1": "u2", "32FC1": "f4"}
@@ -61,10 +70,10 @@ def _finite(plain: Any) -> Any:
 def image_of(message: Any) -> dict[str, Any] | None:
     """Return a small copy of an image: width, height and RGBA in base64, or a URL of its data."""
     fields = message.get_fields_and_field_types()
-    if {"format", "data"} <= set(fields) and len(message.data) <= _MAX_COMPRESSED_BYTES:
+    if _COMPRESSED.items() <= fields.items() and len(message.data) <= _MAX_COMPRESSED_BYTES:
         kind = "png" if "png" in message.format else "jpeg"
         return {"url": f"data:image/{kind};base64,{b64encode(bytes(message.data)).decode()}"}
-    if not {"encoding", "step", "height", "width", "data"} <= set(fields):
+    if not _RAW.items() <= fields.items():
         return None
     pixels = _pixels(message)
     if pixels is None:

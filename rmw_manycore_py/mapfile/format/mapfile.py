@@ -57,9 +57,14 @@ class Mapfile:
         )
 
     @property
+    def own_clusters(self) -> tuple[int, ...] | None:
+        """Clusters of this host; None for the whole mapfile, which has all."""
+        return self.sections.hosts[self.host].clusters if self.host else None
+
+    @property
     def home_cluster(self) -> int:
         """Cluster of the bridge and of the links: the first of this host."""
-        return self.sections.hosts[self.host].clusters[0] if self.host else 1
+        return self.own_clusters[0] if self.own_clusters else 1
 
     def file(self, name: str) -> Path:
         """Return the path of a referenced file: relative to the mapfile, `~` expanded."""

@@ -84,3 +84,14 @@ def test_images_that_are_not_whole_are_not_drawn() -> None:
     narrow = image("rgb8", np.array(BYTES, np.uint8))
     narrow.step = 1
     assert image_of(narrow) is None
+
+
+def test_a_message_with_fields_of_an_image_but_other_types_is_none() -> None:
+    class Text:
+        format, data = "plain", "no bytes"
+
+        @staticmethod
+        def get_fields_and_field_types() -> dict[str, str]:
+            return {"format": "string", "data": "string"}
+
+    assert image_of(Text()) is None

@@ -36,15 +36,17 @@ def test_points_are_told_apart():
         "in the road": (6.0, 0.0, -0.8),
         "behind a wall": (1.75, 14.0, 2.1),
         "beyond a gap": (12.0, 14.0, 1.0),
+        "far behind a wall": (1.75e34, 14.0e34, 2.1e34),
+        "far in the sky": (0.0, 0.0, 3e38),
         "nowhere": (np.nan, 0.0, 0.0),
     }
     sensor = np.array(list(points.values()), np.float32)
     found = voxel_map.finest.point_evidence(sensor, at, DEFAULT.outlier_ratio)
     evidence = dict(zip(points, found, strict=True))
     is_past = {name for name, one in evidence.items() if one[3] > 0}
-    assert is_past == {"behind a wall"}
+    assert is_past == {"behind a wall", "far behind a wall"}
     without_column = {name for name, one in evidence.items() if np.isnan(one[1])}
-    assert without_column == {"behind a wall", "beyond a gap", "nowhere"}
+    assert without_column == {"behind a wall", "beyond a gap", "far behind a wall", "nowhere"}
     assert evidence["on the ground"][1] == pytest.approx(0.0, abs=0.1)
     assert evidence["in the road"][1] == pytest.approx(1.0, abs=0.1)
     assert evidence["in the road"][2] == 8
