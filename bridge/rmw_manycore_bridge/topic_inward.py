@@ -53,7 +53,7 @@ class InwardTopic(Topic):
             self._listen(max((e.qos.depth for e in listeners), default=1))
         else:
             self.stop_listening()
-            self._gaps = Gaps(self._sides.row)  # what nobody takes is not lost
+            self._gaps = Gaps(self._sides.row)  # untaken messages are not lost
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
     def _appear(self, offer: Qos) -> bool:

@@ -113,8 +113,8 @@ Seat * Member::seat_of_this_thread() noexcept {
 Seat * Member::take_seat() noexcept {
   for (uint32_t i = 0; i < seat_capacity; ++i) {
     Seat & seat = page_.seats[i];
-    int32_t nobody = 0;
-    if (!seat.pid.compare_exchange_strong(nobody, getpid(), std::memory_order_acq_rel)) {
+    int32_t untaken = 0;
+    if (!seat.pid.compare_exchange_strong(untaken, getpid(), std::memory_order_acq_rel)) {
       continue;
     }
     seat.tid = gettid();

@@ -31,7 +31,7 @@ enum SeatState : uint32_t { seat_free, seat_running, seat_waiting };
 /// timekeeper reads them while the thread waits.
 struct alignas(64) Seat {
   FutexWord state;
-  std::atomic<int32_t> pid;  ///< who takes a seat sets it, from 0: nobody reads what a seat said
+  std::atomic<int32_t> pid;  ///< set from 0 by who takes the seat: old content is not read
   int32_t tid;               ///< of another thread before
   uint32_t rank;             ///< order of the program in the run
   uint32_t ordinal;          ///< order of the thread in its process

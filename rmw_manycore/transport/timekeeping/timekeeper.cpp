@@ -101,7 +101,7 @@ void Timekeeper::obey(const Command & command) {
   switch (command.kind) {
     case Command::Kind::start: {
       Program & program = programs_[command.rank];
-      note_ends(program);  // of the process before, if nobody has noticed it yet
+      note_ends(program);  // of the process before, unless it was noted
       program.name = command.name;
       program.leader = open_pidfd(command.pid);
       program.started_ns = monotonic_ns();

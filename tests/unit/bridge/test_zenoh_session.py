@@ -75,7 +75,7 @@ def test_messages_that_came_while_no_route_took_them(zenoh, reliability, durabil
     publish(publisher)
     wait_until(subscription.has_data, "it has come")
     here.wake()
-    here.turn(None)  # nobody takes it
+    here.turn(None)  # it has no subscription
     taken = threading.Event()
 
     def pump() -> None:

@@ -36,7 +36,7 @@ def test_a_group_goes_where_all_of_it_fits() -> None:
     assert clusters["f"] == clusters["g"] == 3
 
 
-def test_a_group_that_fits_nowhere_is_cut_where_it_exchanges_least() -> None:
+def test_a_group_too_large_for_any_cluster_is_cut_at_its_weakest_link() -> None:
     chain = {"ab": 10.0, "bc": 10.0, "cd": 1.0, "de": 10.0, "ef": 10.0}
     clusters = proposed(chain, (3, 3), "abcdef")
     assert clusters == {"a": 1, "b": 1, "c": 1, "d": 2, "e": 2, "f": 2}
