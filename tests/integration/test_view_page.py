@@ -83,7 +83,7 @@ def test_a_platform_is_seen_from_start_to_end(view, browser, start, platform) ->
     listener.kill()
 
 
-def test_messages_are_shown_and_a_number_plotted(talking, view, browser) -> None:
+def test_messages_of_a_topic_are_shown(talking, view, browser) -> None:
     browser.open(view[1])
     browser.click("[data-topic='/chatter']")
     browser.find("#picture svg.choosing .topic.selected.related")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -129,8 +130,9 @@ def _topics(chain: str) -> tuple[str, ...]:
 
 
 def _advised(plan: Plan, profile: Profile, topics: tuple[str, ...]) -> Path:
-    """Write the advised mapfile, unless it is there already."""
-    path = plan.directory / "advised.yaml"
+    """Write the mapfile that is advised for a chain, unless it is there already."""
+    digest = hashlib.sha256(" ".join(topics).encode()).hexdigest()[:8]
+    path = plan.directory / f"advised-{digest}.yaml"
     if not path.exists():
         text = yaml.safe_dump(movable(plan.mapfile), sort_keys=False)
         advice = advise(path, text, profile, Request(chain=topics, target=TARGETS["host"]))

@@ -13,8 +13,8 @@ from rmw_manycore_py.advice.library import require_library
 from rmw_manycore_py.bench.advise.contest import Contest, Mapping, contest
 from rmw_manycore_py.bench.machine import machine_header
 from rmw_manycore_py.bench.predict.runs import Plan
-from rmw_manycore_py.cli.common.duration import duration_option
-from rmw_manycore_py.cli.common.options import examples, json_option, number_option
+from rmw_manycore_py.cli.bench.options import mapping_runs_options
+from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.mapfile.installed import find_mapfile
@@ -39,17 +39,7 @@ _MEANINGS = {
 @click.option(
     "--chain", default="", help="Topics of the chain, separated by spaces.  [default: the longest]"
 )
-@number_option("--mappings", within=(1, None), default=20, help="Random mappings beside it.")
-@number_option("--repetitions", within=(1, None), default=3, help="Runs of each mapping.")
-@duration_option(10.0, "Length of a run.")
-@number_option("--seed", within=(0, None), default=1, help="Seed of the mappings.")
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(file_okay=False, path_type=Path),
-    help="Directory of profile, mappings, runs; bench predict may have written it.",
-)
+@mapping_runs_options(min_mappings=1, repetitions=3)
 @json_option
 def command(
     mapfile: str,

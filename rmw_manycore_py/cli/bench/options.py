@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.options import number_option
 
 DEFAULT_ROUNDS = 5
@@ -51,3 +52,31 @@ def bench_options(body: Body) -> Body:
     for option in reversed(options):
         body = option(body)
     return body
+
+
+def mapping_runs_options(*, min_mappings: int, repetitions: int) -> Callable[[Body], Body]:
+    """Return a decorator that adds the options on random mappings and their runs."""
+    options = [
+        number_option("--mappings", within=(min_mappings, None), default=20, help="Random ones."),
+        number_option(
+            "--repetitions", within=(1, None), default=repetitions, help="Runs of each mapping."
+        ),
+        duration_option(10.0, "Length of a run."),
+        number_option(
+            "--seed", within=(0, None), default=1, help="Seed of mappings and predictions."
+        ),
+        click.option(
+            "-o",
+            "--output",
+            required=True,
+            type=click.Path(file_okay=False, path_type=Path),
+            help="Directory of profiles, mappings and runs; a second start goes on there.",
+        ),
+    ]
+
+    def decorate(body: Body) -> Body:
+        for option in reversed(options):
+            body = option(body)
+        return body
+
+    return decorate

@@ -17,8 +17,8 @@ from rmw_manycore_py.bench.predict.errors import MappingError, Order, error_of, 
 from rmw_manycore_py.bench.predict.halves import Queueing, queueing_of
 from rmw_manycore_py.bench.predict.reports import ReportedChain, reported_chains
 from rmw_manycore_py.bench.predict.runs import Compared, Plan, compared
-from rmw_manycore_py.cli.common.duration import duration_option
-from rmw_manycore_py.cli.common.options import examples, json_option, number_option
+from rmw_manycore_py.cli.bench.options import mapping_runs_options
+from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.mapfile.installed import find_mapfile
@@ -39,10 +39,7 @@ APPLICATIONS = ("autoware_reference", "image_pipeline")
     ),
 )
 @click.argument("mapfiles", nargs=-1, metavar="[MAPFILE]...")
-@number_option("--mappings", within=(0, None), default=20, help="Random mappings of each.")
-@number_option("--repetitions", within=(1, None), default=5, help="Runs of each mapping.")
-@duration_option(10.0, "Length of a run.")
-@number_option("--seed", within=(0, None), default=1, help="Seed of mappings and predictions.")
+@mapping_runs_options(min_mappings=0, repetitions=5)
 @click.option(
     "--report",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
@@ -54,13 +51,6 @@ APPLICATIONS = ("autoware_reference", "image_pipeline")
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
     metavar="FIRST SECOND",
     help="Also predict the second of two imported profiles from the first.",
-)
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(file_okay=False, path_type=Path),
-    help="Directory of profiles, mappings and runs; a second start goes on there.",
 )
 @json_option
 def command(
