@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import os
 import re
 import select
@@ -24,6 +25,8 @@ from rmw_manycore_py.process.readiness import report_ready
 from rmw_manycore_py.process.signals import signal_inbox
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import Direction, Route
+
+_LEAVING_S = 4.5  # `manycore run` insists after 5 s
 
 
 class BridgeProcess:
@@ -102,12 +105,15 @@ class BridgeProcess:
                     if self._lanes.look():
                         self._graphs_changed()
             finally:  # an I/O error of the table ends the process; the runner restarts it
+                # An engine that never returns is shown with the call that waits for it.
+                faulthandler.dump_traceback_later(_LEAVING_S)
                 for loop in self._loops:
                     loop.stop()
             for loop in self._loops:
                 loop.close_movers()
             for loop in reversed(self._loops):
                 loop.close()
+            faulthandler.cancel_dump_traceback_later()
             os.close(self._failed)
             return _report(self._loops)
 
