@@ -68,6 +68,12 @@ bool pin_to_cpu(int host_cpu) noexcept {
   return sched_setaffinity(0, sizeof cpus, &cpus) == 0;
 }
 
+bool run_in_real_time(int priority) noexcept {
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  return sched_setscheduler(0, SCHED_FIFO, &parameters) == 0;
+}
+
 std::string program_name() {
   const std::vector<std::string> words = command_line();
   if (words.empty()) {

@@ -17,6 +17,9 @@ FileDescriptor open_pidfd(pid_t pid);
 /// permitted.
 bool pin_to_cpu(int host_cpu) noexcept;
 
+/// Schedules the calling thread with SCHED_FIFO; false if this user may not. `priority`: 1 to 99.
+bool run_in_real_time(int priority) noexcept;
+
 /// Name of this program, for labels: the script or module of an interpreter, the docstring of its
 /// command, otherwise the executable.
 std::string program_name();

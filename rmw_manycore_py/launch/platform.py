@@ -13,6 +13,7 @@ from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.platform.topology import RECEIVE_THREAD_CORE, Core
+from rmw_manycore_py.process.scheduling import own_scheduling
 
 GROWS = 0  # size of a topic DSM that grows on demand
 
@@ -47,6 +48,11 @@ def configured_platform(placement: Placement) -> _transport.Configurator:
                 )
                 for topic in placement.topics
             ],
+            priority_of_receive_thread={
+                cluster.id: priority
+                for cluster in topology.clusters
+                if (priority := placement.receive_priority(cluster.id, own_scheduling()))
+            },
             numa_node_of_cluster={
                 cluster.id: cluster.host.node
                 for cluster in topology.clusters

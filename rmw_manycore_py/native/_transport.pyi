@@ -351,6 +351,7 @@ class Configurator:
         smem_bytes: int,
         host_cpu_of_receive_thread: Mapping[int, int],
         topics: Sequence[TopicConfiguration],
+        priority_of_receive_thread: Mapping[int, int] = ...,
         numa_node_of_cluster: Mapping[int, int] = ...,
     ) -> None: ...
     def close(self) -> None: ...

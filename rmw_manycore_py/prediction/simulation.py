@@ -31,6 +31,7 @@ from rmw_manycore_py.prediction.topics import (
     after,
 )
 from rmw_manycore_py.prediction.work import Demand, joins_of
+from rmw_manycore_py.process.scheduling import Scheduling
 from rmw_manycore_py.profile.model import Callback, Distribution
 from rmw_manycore_py.trace.events import Kind
 
@@ -244,10 +245,11 @@ class Simulation:
         core = Core(cluster, RECEIVE_THREAD_CORE)
         cpu = self.sites.receive_cpus.get(cluster)
         cpus = self._cpus_of(Site(core, () if cpu is None else (cpu,)))
+        priority = self.sites.receive_priorities.get(cluster)
         self.receive_threads[cluster] = ReceiveThread(
             self.env,
             cluster,
-            Task(cpus),
+            Task.of(cpus, Scheduling("fifo", priority) if priority else None),
             self.target.ns("receive_us") / self.target.speed,
             self._wake_ns,
             EventLog.new(self._is_traced),

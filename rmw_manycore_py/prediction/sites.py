@@ -29,6 +29,7 @@ class Sites:
     """Places of nodes by full name, and what the mapfile says about topics.
 
     :ivar receive_cpus: host CPU of the receive thread of each cluster.
+    :ivar receive_priorities: real-time priority of the receive thread of each cluster; 0 = none.
     :ivar depths: queue depths of subscriptions by node and topic, where sources tell.
     :ivar rings: bytes of each topic DSM of fixed size, by topic.
     :ivar transferred: topics that are copied to other clusters before their readers are notified.
@@ -37,6 +38,7 @@ class Sites:
 
     nodes: Mapping[str, Site]
     receive_cpus: Mapping[int, int] = field(default_factory=dict)
+    receive_priorities: Mapping[int, int] = field(default_factory=dict)
     depths: Mapping[tuple[str, str], int] = field(default_factory=dict)
     rings: Mapping[str, int] = field(default_factory=dict)
     transferred: frozenset[str] = frozenset()
@@ -44,9 +46,10 @@ class Sites:
     bridge: Mapping[str, Site] = field(default_factory=dict)  # by direction
 
     def scheduled(self, scheduling: Scheduling) -> Sites:
-        """Return the places with all nodes scheduled like this; receive threads never are."""
+        """Return the places with all nodes and receive threads scheduled like this."""
         nodes = {name: replace(one, scheduling=scheduling) for name, one in self.nodes.items()}
-        return replace(self, nodes=nodes)
+        priorities = dict.fromkeys(self.receive_priorities, scheduling.priority + 1)
+        return replace(self, nodes=nodes, receive_priorities=priorities)
 
     def of(self, node: str) -> Site | None:
         """Return the place of a node or of a bridge's node."""
@@ -82,6 +85,9 @@ def sites_of(placement: Placement) -> Sites:
             cluster: placement.host_cpus[core]
             for cluster, core in receivers.items()
             if core in placement.host_cpus
+        },
+        receive_priorities={
+            one: placement.receive_priority(one, Scheduling("other")) for one in clusters
         },
         depths=depths,
         rings={one.name: one.topic_dsm_size for one in placement.topics if one.topic_dsm_size},

@@ -26,6 +26,13 @@ class Scheduling:
         return f"{self.policy} {self.priority}" if self.policy in REAL_TIME else self.policy
 
 
+def own_scheduling() -> Scheduling:
+    """Return what a process that this thread starts inherits."""
+    number = os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK
+    policy = {value: name for name, value in POLICIES.items()}.get(number, "other")
+    return Scheduling(policy, os.sched_getparam(0).sched_priority)
+
+
 @contextmanager
 def scheduled_as(scheduling: Scheduling | None) -> Iterator[None]:
     """Set the calling thread's scheduling while it starts a process, which inherits it.

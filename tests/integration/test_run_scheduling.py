@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.process.scheduling import Scheduling, refusal
 from support import IS_MANYCORE
 from support.processes.commands import manycore_command
@@ -22,6 +23,16 @@ pytestmark = [
 ]
 
 SHOW = "import os; print(os.sched_getscheduler(0), os.sched_getparam(0).sched_priority)"
+JOIN_AND_WAIT = """
+import rclpy
+rclpy.init()
+node = rclpy.create_node("waiting")
+print("joined", flush=True)
+try:
+    rclpy.spin(node)
+except BaseException:
+    pass
+"""
 # A process without the right to priorities of real time; it needs rights to give that one up.
 WITHOUT_RIGHTS = ["prlimit", "--rtprio=0:0"]
 if os.geteuid() == 0:
@@ -64,6 +75,31 @@ def test_each_node_has_its_policy_and_the_runner_keeps_its_own(start, tmp_path, 
         f"third    | {os.SCHED_RR} 2",
         f"fourth   | {os.SCHED_OTHER} 0",
     }
+
+
+@pytest.mark.skipif(
+    refusal(Scheduling("fifo", 4)) is not None, reason="this user has no priorities of real time"
+)
+def test_a_receive_thread_is_more_urgent_than_the_nodes_of_its_cluster(
+    start, tmp_path, platform
+) -> None:
+    mapfile = write(tmp_path, urgent={"policy": "rr", "priority": 3}, other={"policy": "other"})
+    nodes = json.loads(mapfile.read_text())["nodes"]
+    for cluster, node in enumerate(nodes.values(), start=1):
+        node["cluster"] = cluster
+        node["command"] = [sys.executable, "-c", JOIN_AND_WAIT]
+    mapfile.write_text(json.dumps({"nodes": nodes}))
+    run = start(manycore_command("run", mapfile))
+    for _ in nodes:
+        run.wait_for("joined")
+    with _transport.Platform(platform) as view:
+        pids = {one.id: one.receive_thread_pid for one in view.clusters()}
+    found = {
+        cluster: (os.sched_getscheduler(pid), os.sched_getparam(pid).sched_priority)
+        for cluster, pid in pids.items()
+        if pid
+    }
+    assert found == {1: (os.SCHED_FIFO, 4), 2: (os.SCHED_OTHER, 0)}
 
 
 FORBIDDEN: Any = {"plain": {}, "real": {"policy": "fifo", "priority": 30}}

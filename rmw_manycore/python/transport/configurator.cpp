@@ -21,6 +21,7 @@ namespace {
 Profile profile_of(
   uint32_t clusters, uint32_t cores_per_cluster, uint64_t smem_bytes,
   const std::map<uint32_t, int> & host_cpu_of_receive_thread,
+  const std::map<uint32_t, int> & priority_of_receive_thread,
   const std::map<uint32_t, int> & numa_node_of_cluster) {
   if (clusters == 0 || clusters > max_clusters) {
     throw nb::value_error("clusters: expected 1 to 64");
@@ -37,6 +38,7 @@ Profile profile_of(
     }
   };
   fill(profile.host_cpu_of_receive_thread, host_cpu_of_receive_thread);
+  fill(profile.priority_of_receive_thread, priority_of_receive_thread);
   fill(profile.numa_node, numa_node_of_cluster);
   return profile;
 }
@@ -48,11 +50,13 @@ public:
     const std::string & name, uint32_t clusters, uint32_t cores_per_cluster, uint64_t smem_bytes,
     const std::map<uint32_t, int> & host_cpu_of_receive_thread,
     const std::vector<TopicConfiguration> & topics,
+    const std::map<uint32_t, int> & priority_of_receive_thread,
     const std::map<uint32_t, int> & numa_node_of_cluster)
   : configurator_(std::make_unique<Configurator>(
       name,
       profile_of(
-        clusters, cores_per_cluster, smem_bytes, host_cpu_of_receive_thread, numa_node_of_cluster),
+        clusters, cores_per_cluster, smem_bytes, host_cpu_of_receive_thread,
+        priority_of_receive_thread, numa_node_of_cluster),
       topics)) {}
 
   void close() { configurator_.reset(); }
@@ -101,9 +105,11 @@ void bind_configurator(nb::module_ & module) {
   bound.def(
     nb::init<
       const std::string &, uint32_t, uint32_t, uint64_t, const std::map<uint32_t, int> &,
-      const std::vector<TopicConfiguration> &, const std::map<uint32_t, int> &>(),
+      const std::vector<TopicConfiguration> &, const std::map<uint32_t, int> &,
+      const std::map<uint32_t, int> &>(),
     nb::arg("name"), nb::kw_only(), nb::arg("clusters"), nb::arg("cores_per_cluster"),
     nb::arg("smem_bytes"), nb::arg("host_cpu_of_receive_thread"), nb::arg("topics"),
+    nb::arg("priority_of_receive_thread") = std::map<uint32_t, int>{},
     nb::arg("numa_node_of_cluster") = std::map<uint32_t, int>{});
   bind_context(bound);
 }

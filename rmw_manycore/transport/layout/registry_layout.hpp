@@ -185,7 +185,8 @@ struct Profile {
   uint32_t cores_per_cluster;
   uint64_t smem_bytes;                               ///< of each cluster
   int32_t host_cpu_of_receive_thread[max_clusters];  ///< index cluster - 1; -1 = not pinned
-  int32_t numa_node[max_clusters];                   ///< of its SMEM, likewise; -1 = any
+  int32_t priority_of_receive_thread[max_clusters];  ///< SCHED_FIFO; 0 = SCHED_OTHER
+  int32_t numa_node[max_clusters];                   ///< of its SMEM; -1 = any
 };
 
 /// SMEM that no endpoint leads to, as it is being reserved for one or given back. The holder of a

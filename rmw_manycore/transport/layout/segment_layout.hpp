@@ -9,7 +9,7 @@
 namespace manycore {
 
 /// Increment whenever a struct in a *_layout.hpp, its meaning, or a file name changes.
-constexpr uint32_t layout_version = 31;
+constexpr uint32_t layout_version = 32;
 
 constexpr uint64_t registry_magic = 0x4d43'5245'4749'5354;  // "MCREGIST"
 constexpr uint64_t cluster_magic = 0x4d43'434c'5553'5452;   // "MCCLUSTR"

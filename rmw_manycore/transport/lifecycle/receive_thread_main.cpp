@@ -38,6 +38,11 @@ void serve(const std::string & platform, uint32_t id, Daemon & daemon) {
   if (host_cpu >= 0) {
     pin_to_cpu(host_cpu);
   }
+  // Before the movers start, which inherit it. The limit may be the priority of the nodes.
+  const int priority = registry.header().profile.priority_of_receive_thread[id - 1];
+  if (priority > 0 && !run_in_real_time(priority)) {
+    run_in_real_time(priority - 1);
+  }
   TraceIdentity identity;
   identity.cluster = id;
   identity.host_cpu = host_cpu;

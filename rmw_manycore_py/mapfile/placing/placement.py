@@ -13,7 +13,7 @@ from rmw_manycore_py.native.enums import Transfer, ZeroCopy
 from rmw_manycore_py.platform.smem import DEFAULT_DEPTH
 from rmw_manycore_py.platform.topology import Core, Topology, room_for_topic_dsms
 from rmw_manycore_py.platform.transfers import transfer_text
-from rmw_manycore_py.process.scheduling import Scheduling
+from rmw_manycore_py.process.scheduling import MAX_PRIORITY, REAL_TIME, Scheduling
 from rmw_manycore_py.ros.names import file_stem
 from rmw_manycore_py.routes.outside import OutsideSettings
 from rmw_manycore_py.routes.route import DIRECTIONS, Direction, Route
@@ -269,3 +269,15 @@ class Placement:
     def crossings(self) -> tuple[BridgePlacement, ...]:
         """Everything that leaves the platform or this host's part of it."""
         return tuple(one for one in (self.bridge, self.links) if one is not None)
+
+    def receive_priority(self, cluster: int, inherited: Scheduling) -> int:
+        """Return the real-time priority of a cluster's receive thread; 0 = none.
+
+        It is one above its most urgent node: else that node's messages would wait behind ordinary
+        work, and no message would pass a node that spins on the same CPU.
+
+        :param inherited: scheduling of nodes without their own.
+        """
+        nodes = (one.scheduling or inherited for one in self.nodes if one.cluster == cluster)
+        priorities = [one.priority for one in nodes if one.policy in REAL_TIME]
+        return min(max(priorities) + 1, MAX_PRIORITY) if priorities else 0
