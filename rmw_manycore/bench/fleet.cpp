@@ -81,16 +81,6 @@ private:
 
 using Fleet = std::deque<FleetNode>;
 
-void take(const rcl_subscription_t & subscription) {
-  rcl_interfaces__msg__ParameterEvent message;
-  rcl_interfaces__msg__ParameterEvent__init(&message);
-  const rcl_ret_t status = rcl_take(&subscription, &message, nullptr, nullptr);
-  if (status != RCL_RET_SUBSCRIPTION_TAKE_FAILED) {
-    check_rcl(status, "rcl_take");
-  }
-  rcl_interfaces__msg__ParameterEvent__fini(&message);
-}
-
 /// Acts as a single executor of all nodes until `end` is triggered. While the fleet is silent, a
 /// wake-up for anything but a subscription, whose publisher is outside, is an error. There need not
 /// be a message: a subscription looks again when a publisher leaves that may have had one.
@@ -106,7 +96,7 @@ void wait_for_anything(
     bool is_for_messages = false;
     wait_set.for_each_ready_subscription([&](const rcl_subscription_t & subscription) {
       is_for_messages = true;
-      take(subscription);
+      take_parameter_event(subscription);
     });
     if (is_silent && !is_for_messages && !wait_set.is_ended()) {
       throw std::runtime_error("a node of the fleet woke up, but not for a subscription");

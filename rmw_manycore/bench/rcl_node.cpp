@@ -37,6 +37,16 @@ void report_rcl(rcl_ret_t status) {
   }
 }
 
+void take_parameter_event(const rcl_subscription_t & subscription) {
+  rcl_interfaces__msg__ParameterEvent message;
+  rcl_interfaces__msg__ParameterEvent__init(&message);
+  const rcl_ret_t status = rcl_take(&subscription, &message, nullptr, nullptr);
+  if (status != RCL_RET_SUBSCRIPTION_TAKE_FAILED) {
+    check_rcl(status, "rcl_take");
+  }
+  rcl_interfaces__msg__ParameterEvent__fini(&message);
+}
+
 namespace {
 
 struct ServiceKind {
@@ -81,7 +91,11 @@ RclGuardCondition::RclGuardCondition(RclContext & context) {
 
 RclNode::RclNode(rcl_context_t & context, const std::string & name) {
   const rcl_node_options_t options = rcl_node_get_default_options();
-  check_rcl(rcl_node_init(&node_, name.c_str(), "", &context, &options), "rcl_node_init");
+  const size_t slash = name.rfind('/');
+  const std::string base = slash == std::string::npos ? name : name.substr(slash + 1);
+  const std::string space = slash == std::string::npos ? "" : name.substr(0, slash);
+  check_rcl(
+    rcl_node_init(&node_, base.c_str(), space.c_str(), &context, &options), "rcl_node_init");
   const auto * const log = ROSIDL_GET_MSG_TYPE_SUPPORT(rcl_interfaces, msg, Log);
   const auto * const event = ROSIDL_GET_MSG_TYPE_SUPPORT(rcl_interfaces, msg, ParameterEvent);
   publish("/rosout", log, rcl_qos_profile_rosout_default);
@@ -183,11 +197,11 @@ void RclWaitSet::add_all() {
   check_rcl(rcl_wait_set_add_guard_condition(&wait_set_, &end_.get(), nullptr), what);
 }
 
-void RclWaitSet::wait() {
+void RclWaitSet::wait(int64_t timeout_ns) {
   check_rcl(rcl_wait_set_clear(&wait_set_), "rcl_wait_set_clear");
   add_all();
-  const rcl_ret_t status = rcl_wait(&wait_set_, -1);
-  if (status != RCL_RET_TIMEOUT) {  // returned when the timer is due
+  const rcl_ret_t status = rcl_wait(&wait_set_, timeout_ns);
+  if (status != RCL_RET_TIMEOUT) {  // also returned when the timer is due
     check_rcl(status, "rcl_wait");
   }
 }

@@ -14,6 +14,8 @@ namespace manycore::bench {
 void check_rcl(rcl_ret_t status, const char * what);
 /// Prints rcl's error text, for destructors.
 void report_rcl(rcl_ret_t status);
+/// Takes a message of /parameter_events, if there is one, and drops it.
+void take_parameter_event(const rcl_subscription_t & subscription);
 
 /// An rcl context, shut down by the destructor.
 class RclContext {
@@ -47,6 +49,7 @@ private:
 /// for its lifetime.
 class RclNode {
 public:
+  /// `name` may be full, such as "/sensing/lidar".
   RclNode(rcl_context_t & context, const std::string & name);
   RclNode(const RclNode &) = delete;
   RclNode & operator=(const RclNode &) = delete;
@@ -87,8 +90,8 @@ public:
   RclWaitSet & operator=(const RclWaitSet &) = delete;
   ~RclWaitSet() { report_rcl(rcl_wait_set_fini(&wait_set_)); }
 
-  /// Waits until any entity is ready.
-  void wait();
+  /// Waits until any entity is ready, or for `timeout_ns` if that is not negative.
+  void wait(int64_t timeout_ns = -1);
 
   bool is_ended() const { return wait_set_.guard_conditions[0] != nullptr; }
   bool is_timer_ready() const { return timer_ != nullptr && wait_set_.timers[0] != nullptr; }

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -80,13 +80,17 @@ def _watch(run: Run, middleware: Middleware, nodes: int) -> list[Result]:
     ]
 
 
-def wait_until_quiet(pids: Sequence[int], timeout_s: float = 30.0) -> None:
-    """Return after a second without wake-ups, or after the timeout."""
+def wait_until_quiet(pids: Sequence[int], timeout_s: float = 30.0) -> bool:
+    """Wait for a second in which all threads sleep; return whether it came within the timeout."""
     deadline = time.monotonic() + timeout_s
     seen = -1
-    while time.monotonic() < deadline and seen != (now := wake_ups(pids)):
+    while time.monotonic() < deadline:
+        now = wake_ups(pids)
+        if now == seen and not _wants_cpu(pids):
+            return True
         seen = now
         time.sleep(1.0)
+    return False
 
 
 def cpu_ns(pids: Iterable[int]) -> int:
@@ -96,12 +100,19 @@ def cpu_ns(pids: Iterable[int]) -> int:
 
 def wake_ups(pids: Iterable[int]) -> int:
     """Return the number of voluntary context switches of all threads of the processes."""
-    return sum(
-        int(line.split()[1])
-        for path in _tasks(pids, "status")
-        for line in path.read_text().splitlines()
-        if line.startswith("voluntary_ctxt_switches")
-    )
+    return sum(int(value) for value in _values(pids, "voluntary_ctxt_switches"))
+
+
+def _wants_cpu(pids: Iterable[int]) -> bool:
+    """Return whether a thread runs, or would if others let it."""
+    return any(value.startswith(("R", "D")) for value in _values(pids, "State"))
+
+
+def _values(pids: Iterable[int], name: str) -> Iterator[str]:
+    for path in _tasks(pids, "status"):
+        for line in path.read_text().splitlines():
+            if line.startswith(f"{name}:"):
+                yield line.split()[1]
 
 
 def _tasks(pids: Iterable[int], name: str) -> Iterable[Path]:

@@ -127,6 +127,12 @@ class Process:
         assert self._process.stdout is not None
         return self._process.stdout.readline()
 
+    def send_line(self, line: str) -> None:
+        """Write a line to the process's input."""
+        assert self._process.stdin is not None
+        self._process.stdin.write(f"{line}\n")
+        self._process.stdin.flush()
+
     def release(self) -> None:
         """Close the process's input, which some programs wait for."""
         assert self._process.stdin is not None

@@ -17,9 +17,11 @@ import pytest
 
 from rmw_manycore_py.bench.cameras import MIDDLEWARES, SMALL, detections
 from rmw_manycore_py.bench.hosts import can_have_hosts
+from rmw_manycore_py.profile.files import save
 from support import TIMEOUT_S, wait_until
 from support.processes.commands import manycore_command
 from support.processes.platforms import PLATFORMS, entries
+from support.samples.profiles import pipeline
 
 pytestmark = pytest.mark.integration
 
@@ -250,6 +252,17 @@ def test_nodes_do_not_wake_each_other() -> None:
         return sleeps == found["CPU time of all when nothing happens"] == 0
 
     assert comes_once(sleep_on)
+
+
+@pytest.mark.long
+def test_the_skeleton_of_a_profile_is_measured(tmp_path: Path) -> None:
+    save(pipeline(), tmp_path / "profile.json")
+    report = run_bench("autoware", str(tmp_path / "profile.json"), "--only", "manycore")
+    medians = {row["question"]: row["median"] for row in report["results"]}
+    assert len(medians) == 12
+    assert medians["messages lost"] == 0
+    silent = {"messages lost", "wake-ups of all at rest", "CPU time of all at rest"}
+    assert all(median > 0 for question, median in medians.items() if question not in silent)
 
 
 @pytest.mark.long

@@ -8,9 +8,9 @@ import click
 from rmw_manycore_py.cli.common.group import LazyGroup
 
 _NAMES = (
-    *("advise", "all", "bridge", "copies", "fields", "hosts", "idle", "machine", "matrix"),
-    *("memory", "ndt", "noc", "pairs", "predict", "rclpy", "record", "reference", "rmw"),
-    *("ros-lite", "scale", "startup", "trace", "view", "virtual", "whill"),
+    *("advise", "all", "autoware", "bridge", "copies", "fields", "hosts", "idle", "machine"),
+    *("matrix", "memory", "ndt", "noc", "pairs", "predict", "rclpy", "record", "reference"),
+    *("rmw", "ros-lite", "scale", "startup", "trace", "view", "virtual", "whill"),
 )
 VERBS = {verb: f"rmw_manycore_py.cli.bench.{verb.replace('-', '_')}:command" for verb in _NAMES}
 

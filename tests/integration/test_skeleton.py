@@ -1,0 +1,76 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The nodes of a skeleton exchange messages at its rates, and their losses are counted."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from subprocess import Popen
+
+import pytest
+
+from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, Middleware
+from rmw_manycore_py.bench.idle import wait_until_quiet
+from rmw_manycore_py.bench.scale.skeleton import skeleton_of
+from rmw_manycore_py.bench.scale.skeleton_run import SkeletonRun
+from rmw_manycore_py.bench.session import Session, usable_cpus
+from support.samples.profiles import pipeline
+
+pytestmark = pytest.mark.integration
+
+FILTER = 1
+PUBLISHED_S = 1.0
+SLEEP, LOOP = "import time; time.sleep(60)", "while True: pass"
+DEEP = 100  # more than is published, however late a node takes
+
+Start = Callable[[int], SkeletonRun]
+
+
+@pytest.fixture(params=[INSIDE, FAST_DDS], ids=["manycore", "fast_dds"])
+def start(request: pytest.FixtureRequest) -> Iterator[Start]:
+    """Start the nodes of the pipeline, with queues of a depth."""
+    middleware: Middleware = request.param
+    profile = pipeline()
+
+    def started(depth: int) -> SkeletonRun:
+        deep = {"queue_depth": depth}
+        inputs = tuple(one.model_copy(update=deep) for one in profile.subscriptions)
+        outputs = tuple(one.model_copy(update=deep) for one in profile.publishers)
+        changed = pipeline(subscriptions=inputs, publishers=outputs)
+        return SkeletonRun(session, skeleton_of(changed))
+
+    with Session(middleware, usable_cpus()) as session:
+        yield started
+
+
+def test_each_message_reaches_its_subscription(start: Start) -> None:
+    nodes = start(DEEP)
+    nodes.publish(PUBLISHED_S)
+    nodes.settle()
+    found = nodes.finish()
+    assert found.published > 0
+    assert found.due == found.published
+    assert found.lost == 0
+    assert min(found.ages_ns) > 0
+
+
+def test_messages_that_a_stopped_node_does_not_take_are_lost(start: Start) -> None:
+    nodes = start(1)
+    os.kill(nodes.pids[FILTER], signal.SIGSTOP)
+    nodes.publish(PUBLISHED_S)
+    os.kill(nodes.pids[FILTER], signal.SIGCONT)
+    nodes.settle(timeout_s=2)
+    assert nodes.finish().lost > 0
+
+
+def test_a_process_is_not_quiet_while_others_keep_it_from_running() -> None:
+    sleeping, busy = (Popen([sys.executable, "-c", code]) for code in (SLEEP, LOOP))
+    try:
+        assert wait_until_quiet([sleeping.pid])
+        assert not wait_until_quiet([busy.pid], timeout_s=1.5)
+    finally:
+        for one in (sleeping, busy):
+            one.kill()
+            one.wait()
