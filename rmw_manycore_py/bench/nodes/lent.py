@@ -10,34 +10,34 @@ import json
 import sys
 import time
 
-from rmw_manycore_py.bench.nodes.links import link
+from rmw_manycore_py.bench.nodes.links import receiver, sender
 
 END = 0
 
 
 def _ping(kind: str, size_bytes: int, warm_up: int, iterations: int) -> None:
-    own = link(kind, "ping", "pong", size_bytes)
+    to, back = sender(kind, "ping", size_bytes), receiver(kind, "pong")
     print("ready", flush=True)
     sys.stdin.read()  # the other end is there
     samples_ns = []
     for number in range(1, warm_up + iterations + 1):
         begin_ns = time.perf_counter_ns()
-        own.send(number)
-        while own.receive() != number:
+        to.send(number)
+        while back.receive() != number:
             pass
         samples_ns.append(time.perf_counter_ns() - begin_ns)
-    own.send(END)
-    own.receive()
+    to.send(END)
+    back.receive()
     print(json.dumps({"samples_ns": samples_ns[warm_up:]}))
 
 
 def _pong(kind: str, size_bytes: int) -> None:
-    own = link(kind, "pong", "ping", size_bytes)
+    back, to = sender(kind, "pong", size_bytes), receiver(kind, "ping")
     print("ready", flush=True)
     number = -1
     while number != END:
-        number = own.receive()
-        own.send(number)
+        number = to.receive()
+        back.send(number)
     sys.stdin.read()  # until the other end has the answer
 
 

@@ -1,7 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """One message after the other in room that the middleware lends: ours, and iceoryx2.
 
-A message begins with a number. Nothing else of it is touched.
+A message begins with a number. Nothing else of it is touched. Kinds: "manycore", which waits as
+$MANYCORE_WAIT says, "iceoryx2 (block)", with an event for each message, and "iceoryx2 (spin)".
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import ctypes
 import importlib
 import os
+from functools import cache
 from typing import Any, Protocol
 
 import numpy as np
@@ -16,32 +18,41 @@ import numpy as np
 from rmw_manycore_py import transport
 
 PLATFORM = "MANYCORE_PLATFORM"  # its value names the services of iceoryx2, too
+DEPTH = 10
 
 
-class Link(Protocol):
-    """Sends on one topic, receives on another."""
+class Sender(Protocol):
+    """A publisher of one topic."""
 
     def send(self, number: int) -> None:
         """Publish a message."""
+
+
+class Receiver(Protocol):
+    """A subscription to one topic."""
 
     def receive(self) -> int:
         """Wait for a message, and return its number."""
 
 
-class ManycoreLink:
-    """Our Python API; it waits as $MANYCORE_WAIT says."""
+class ManycoreSender:
+    """A publisher of our Python API."""
 
-    def __init__(self, to: str, since: str, size_bytes: int) -> None:
-        member = transport.join()
+    def __init__(self, topic: str, size_bytes: int) -> None:
         self._shape = (size_bytes,)
-        self._publisher = member.publisher(f"/{to}", np.uint8)
-        self._subscription = member.subscription(f"/{since}", np.uint8)
-        self._member = member
+        self._publisher = _member().publisher(f"/{topic}", np.uint8, qos=DEPTH)
 
     def send(self, number: int) -> None:
         """Publish a message in lent room."""
         with self._publisher.lend(self._shape) as loan:
             loan.array.view(np.uint64)[0] = number
+
+
+class ManycoreReceiver:
+    """A subscription of our Python API."""
+
+    def __init__(self, topic: str) -> None:
+        self._subscription = _member().subscription(f"/{topic}", np.uint8, qos=DEPTH)
 
     def receive(self) -> int:
         """Read a message where it lies."""
@@ -49,35 +60,20 @@ class ManycoreLink:
             return int(message.array[:8].view(np.uint64)[0])
 
 
-class IceoryxLink:
-    """The Python binding of iceoryx2; with `sleeps`, an event announces each message."""
+@cache
+def _member() -> transport.Member:
+    return transport.join()
 
-    def __init__(self, to: str, since: str, size_bytes: int, *, sleeps: bool) -> None:
-        self._iceoryx: Any = importlib.import_module("iceoryx2")
-        self._node = self._iceoryx.NodeBuilder.new().create(self._iceoryx.ServiceType.Ipc)
+
+class IceoryxSender:
+    """A publisher of iceoryx2's Python binding."""
+
+    def __init__(self, topic: str, size_bytes: int, *, sleeps: bool) -> None:
+        service = _service(topic).open_or_create()
         self._size_bytes = size_bytes
         self._sleeps = sleeps
-        publishing, receiving = (self._service(name) for name in (to, since))
-        publisher = publishing.publisher_builder().initial_max_slice_len(size_bytes)
-        self._publisher = publisher.create()
-        self._subscriber = receiving.subscriber_builder().create()
-        self._notifier = self._event(to).notifier_builder().create()
-        self._listener = self._event(since).listener_builder().create()
-
-    def _name(self, name: str) -> Any:
-        return self._iceoryx.ServiceName.new(f"{os.environ[PLATFORM]}/{name}")
-
-    def _service(self, name: str) -> Any:
-        builder = self._node.service_builder(self._name(name))
-        payload = self._iceoryx.Slice[ctypes.c_uint8]
-        return (
-            builder.publish_subscribe(payload)
-            .payload_alignment(self._iceoryx.Alignment.new(8))
-            .open_or_create()
-        )
-
-    def _event(self, name: str) -> Any:
-        return self._node.service_builder(self._name(name)).event().open_or_create()
+        self._publisher = service.publisher_builder().initial_max_slice_len(size_bytes).create()
+        self._notifier = _event(topic).notifier_builder().create()
 
     def send(self, number: int) -> None:
         """Publish a message in lent room."""
@@ -86,6 +82,16 @@ class IceoryxLink:
         sample.assume_init().send()
         if self._sleeps:
             self._notifier.notify()
+
+
+class IceoryxReceiver:
+    """A subscription of iceoryx2's Python binding."""
+
+    def __init__(self, topic: str, *, sleeps: bool) -> None:
+        service = _service(topic).open_or_create()
+        self._sleeps = sleeps
+        self._subscriber = service.subscriber_builder().buffer_size(DEPTH).create()
+        self._listener = _event(topic).listener_builder().create()
 
     def receive(self) -> int:
         """Read a message where it lies."""
@@ -97,8 +103,51 @@ class IceoryxLink:
         return number
 
 
-def link(kind: str, to: str, since: str, size_bytes: int) -> Link:
-    """Return a link of "manycore", "iceoryx2 (block)" or "iceoryx2 (spin)"."""
+def _service(topic: str) -> Any:
+    iceoryx = _iceoryx()
+    payload = iceoryx.Slice[ctypes.c_uint8]
+    return (
+        _node()
+        .service_builder(_name(topic))
+        .publish_subscribe(payload)
+        .payload_alignment(iceoryx.Alignment.new(8))
+        .subscriber_max_buffer_size(DEPTH)
+    )
+
+
+def _event(topic: str) -> Any:
+    return _node().service_builder(_name(topic)).event().open_or_create()
+
+
+def _name(topic: str) -> Any:
+    return _iceoryx().ServiceName.new(f"{os.environ[PLATFORM]}/{topic}")
+
+
+@cache
+def _node() -> Any:
+    return _iceoryx().NodeBuilder.new().create(_iceoryx().ServiceType.Ipc)
+
+
+@cache
+def _iceoryx() -> Any:
+    return importlib.import_module("iceoryx2")
+
+
+def sender(kind: str, topic: str, size_bytes: int) -> Sender:
+    """Return a publisher of a kind."""
     if kind == "manycore":
-        return ManycoreLink(to, since, size_bytes)
-    return IceoryxLink(to, since, size_bytes, sleeps=kind.endswith("(block)"))
+        return ManycoreSender(topic, size_bytes)
+    return IceoryxSender(topic, size_bytes, sleeps=_sleeps(kind))
+
+
+def receiver(kind: str, topic: str) -> Receiver:
+    """Return a subscription of a kind."""
+    return (
+        ManycoreReceiver(topic)
+        if kind == "manycore"
+        else IceoryxReceiver(topic, sleeps=_sleeps(kind))
+    )
+
+
+def _sleeps(kind: str) -> bool:
+    return kind.endswith("(block)")
