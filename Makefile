@@ -14,7 +14,7 @@ TESTS_ALONE := -DMANYCORE_BUILD_RMW=OFF -DMANYCORE_BUILD_PYTHON=OFF -DMANYCORE_B
 NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 	-type f -not -name '*.md')
 
-.PHONY: help setup demo demo-whill wheel test test-native test-long stress soak sanitize fuzz \
+.PHONY: help setup demo demo-whill wheel test test-native test-long stress soak soak-holds sanitize fuzz \
 	bench lint tidy docs pictures clean
 
 help:  ## print this list
@@ -50,6 +50,10 @@ stress: test-long  ## what takes longer still: random kills, many nodes
 HOURS ?= 1
 soak: setup .venv/tests  ## HOURS=1 of churn, growth and kills: resource use must stay flat
 	$(VENV)/python tests/soak/soak.py --hours $(HOURS) --output build/soak
+
+TAKES ?= 1000000
+soak-holds: setup .venv/tests  ## TAKES=1000000 of messages held, changed, forked, killed: no foreign byte
+	$(VENV)/python tests/soak/holds.py --takes $(TAKES) --output build/soak-holds
 
 test-native: setup .venv/tests  ## the C++ tests
 	scripts/native_tests.sh $(INSTALLED)
