@@ -52,7 +52,7 @@ soak: setup .venv/tests  ## HOURS=1 of churn, growth and kills: resource use mus
 	$(VENV)/python tests/soak/soak.py --hours $(HOURS) --output build/soak
 
 TAKES ?= 1000000
-soak-holds: setup .venv/tests  ## TAKES=1000000 of messages held, changed, forked, killed: no foreign byte
+soak-holds: setup .venv/tests  ## TAKES=1000000 of held messages, kills, forks: no foreign byte
 	$(VENV)/python tests/soak/holds.py --takes $(TAKES) --output build/soak-holds
 
 test-native: setup .venv/tests  ## the C++ tests
