@@ -8,11 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.platform.machine.sysfs import cpus_of_list
-
-SAME_CPU, SIBLINGS, SAME_L3 = "same CPU", "sibling", "same L3"
-SAME_NODE, OTHER_NODE = "same NUMA node", "other NUMA node"
-_SYSTEM = Path("/sys/devices/system/cpu")
+from rmw_manycore_py.platform.machine.clusters import clusters_of
+from rmw_manycore_py.platform.machine.pairs import nearest_pairs
+from rmw_manycore_py.platform.machine.sysfs import SYSTEM, Cpu, read_cpus
 
 
 @dataclass(frozen=True)
@@ -24,14 +22,12 @@ class Placement:
     uc: int
 
 
-def routes(cpus: Sequence[int], system: Path = _SYSTEM) -> dict[str, Placement]:
+def routes(cpus: Sequence[int], system: Path = SYSTEM) -> dict[str, Placement]:
     """Return a placement for each kind of route that these CPUs have, the shortest first."""
-    first, *others = sorted(cpus)
-    found = {SAME_CPU: first}
-    for other in others:
-        found.setdefault(_kind(first, other, system), other)
-    order = (SAME_CPU, SIBLINGS, SAME_L3, SAME_NODE, OTHER_NODE)
-    return {kind: placement(first, found[kind], cpus) for kind in order if kind in found}
+    shown = {cpu.number: cpu for cpu in read_cpus(system)}
+    usable = [shown.get(cpu, Cpu(cpu, (cpu,))) for cpu in sorted(cpus)]
+    pairs = nearest_pairs(usable, clusters_of(usable))
+    return {kind: placement(*pair, cpus) for kind, pair in pairs.items()}
 
 
 def placement(sender: int, receiver: int, cpus: Sequence[int]) -> Placement:
@@ -62,19 +58,3 @@ def main_route(found: Mapping[str, Placement]) -> str:
     """Return the nearest route between two CPUs, or the only one."""
     apart = [name for name, cpus in found.items() if cpus.sender != cpus.receiver]
     return (apart or list(found))[0]
-
-
-def _kind(one: int, other: int, system: Path) -> str:
-    if other in _list(system / f"cpu{one}/topology/thread_siblings_list"):
-        return SIBLINGS
-    if other in _list(system / f"cpu{one}/cache/index3/shared_cpu_list"):
-        return SAME_L3
-    nodes = [sorted(p.name for p in (system / f"cpu{cpu}").glob("node*")) for cpu in (one, other)]
-    return SAME_NODE if nodes[0] == nodes[1] else OTHER_NODE
-
-
-def _list(file: Path) -> tuple[int, ...]:
-    try:
-        return cpus_of_list(file.read_text())
-    except OSError:
-        return ()

@@ -17,38 +17,28 @@ from rmw_manycore_py.papers.thesis.noc.cases import SIZES, Setting, size_name
 from rmw_manycore_py.papers.thesis.noc.figures import figures
 from rmw_manycore_py.papers.thesis.noc.routes import Placement, chosen, main_route, routes
 from rmw_manycore_py.picture.plotting import load_figure
+from support.samples.sysfs import description_of, write_sysfs
 
 pytestmark = pytest.mark.unit
 
 
-def machine(directory: Path) -> Path:
-    """Write what a machine of two nodes with two cores of two threads each says about its CPUs."""
-    for cpu in range(8):
-        own = directory / f"cpu{cpu}"
-        node = cpu // 4
-        (own / "topology").mkdir(parents=True)
-        (own / "cache/index3").mkdir(parents=True)
-        (own / f"node{node}").mkdir()
-        first = cpu // 2 * 2
-        (own / "topology/thread_siblings_list").write_text(f"{first}-{first + 1}\n")
-        (own / "cache/index3/shared_cpu_list").write_text(f"{4 * node}-{4 * node + 3}\n")
-    return directory
-
-
 def test_each_kind_of_route_is_there_once(tmp_path: Path) -> None:
-    found = routes(range(8), machine(tmp_path))
+    system = write_sysfs(description_of("epyc_9654_2s"), tmp_path)
+    found = routes(range(384), system)
     assert {name: place.receiver for name, place in found.items()} == {
         "same CPU": 0,
-        "sibling": 1,
-        "same L3": 2,
-        "other NUMA node": 4,
+        "same core": 192,
+        "same cluster": 1,
+        "same NUMA node": 8,
+        "other NUMA node": 96,
     }
-    assert main_route(found) == "sibling"
+    assert main_route(found) == "same core"
     assert {place.uc for place in found.values()} == {1, 2}
+    assert list(routes((0, 100), system)) == ["same CPU", "other NUMA node"]
 
 
 def test_a_machine_that_says_nothing_has_two_routes(tmp_path: Path) -> None:
-    assert list(routes((0, 1), tmp_path)) == ["same CPU", "same NUMA node"]
+    assert list(routes((0, 1), tmp_path)) == ["same CPU", "same cluster"]
     assert routes((3,), tmp_path) == {"same CPU": Placement(3, 3, 3)}
 
 
