@@ -6,9 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from statistics import median
 
-from rmw_manycore_py.bench.predict.figures import Figures
+from rmw_manycore_py.bench.predict.figures import Figures, typical
 from rmw_manycore_py.bench.predict.runs import Compared
 
 LIGHT = 0.60  # load per CPU up to which a mapping counts for the goals
@@ -36,20 +35,16 @@ class MappingError:
 
 def error_of(one: Compared) -> MappingError:
     """Return the errors of a mapping against the medians of its runs."""
-    p50, p99 = [], []
-    for name in _common(one):
-        predicted = one.predicted.chains[name]
-        p50.append(_relative(predicted.p50_us, _p50s(one.runs, name)))
-        p99.append(_relative(predicted.p99_us, [run.chains[name].p99_us for run in one.runs]))
-    loads = {cpu: median(run.cpus.get(cpu, 0.0) for run in one.runs) for cpu in one.runs[0].cpus}
-    points = [abs(one.predicted.cpus.get(cpu, 0.0) - load) for cpu, load in loads.items()]
+    measured = typical(one.runs)
+    pairs = [(one.predicted.chains[name], measured.chains[name]) for name in _common(one)]
+    points = [abs(one.predicted.cpus.get(cpu, 0.0) - load) for cpu, load in measured.cpus.items()]
     return MappingError(
         one.number,
-        max(loads.values(), default=0.0),
-        tuple(p50),
-        tuple(p99),
+        max(measured.cpus.values(), default=0.0),
+        tuple(predicted.p50_us / found.p50_us - 1 for predicted, found in pairs),
+        tuple(predicted.p99_us / found.p99_us - 1 for predicted, found in pairs),
         100 * max(points, default=0.0),
-        max(run.others for run in one.runs),
+        measured.others,
     )
 
 
@@ -61,10 +56,6 @@ def _common(one: Compared) -> list[str]:
 
 def _p50s(runs: Sequence[Figures], name: str) -> list[float]:
     return [run.chains[name].p50_us for run in runs]
-
-
-def _relative(predicted: float, measured: Sequence[float]) -> float:
-    return predicted / median(measured) - 1
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from statistics import median
 
 from pydantic import BaseModel
 
@@ -61,9 +63,42 @@ def measured_figures(trace: Trace) -> Figures:
     return Figures(chains=chains, cpus=dict(cpus))
 
 
-def predicted_figures(mapping: Path, profile: Profile, duration_s: float, seed: int) -> Figures:
-    """Return the figures that are predicted for a mapfile."""
+def predicted_figures(
+    mapping: Path, profile: Profile, duration_s: float, seeds: Iterable[int]
+) -> Figures:
+    """Return the typical figures of runs that are predicted for a mapfile.
+
+    The phases between timers differ from run to run and stay within one, so each seed is a run.
+    """
     sites = sites_of(resolve(load_mapfile(mapping), to_start=False)).scheduled(SCHEDULING)
+    return typical([_predicted(sites, profile, duration_s, seed) for seed in seeds])
+
+
+def typical(runs: Sequence[Figures]) -> Figures:
+    """Return the medians of the chains that most runs have, and of the loads."""
+    found = defaultdict(list)
+    for run in runs:
+        for name, times in run.chains.items():
+            found[name].append(times)
+    chains = {
+        name: Times(
+            count=round(median(one.count for one in times)),
+            p50_us=median(one.p50_us for one in times),
+            p99_us=median(one.p99_us for one in times),
+            max_us=median(one.max_us for one in times),
+        )
+        for name, times in found.items()
+        if len(times) > len(runs) / 2
+    }
+    numbers = sorted(set[int]().union(*(run.cpus for run in runs)))
+    return Figures(
+        chains=chains,
+        cpus={number: median(run.cpus.get(number, 0.0) for run in runs) for number in numbers},
+        others=max((run.others for run in runs), default=0.0),
+    )
+
+
+def _predicted(sites: Sites, profile: Profile, duration_s: float, seed: int) -> Figures:
     one = predict(sites, profile, HOST, seed=seed, duration_s=duration_s)
     chains = {
         chain.name: Times.model_validate(chain.row())

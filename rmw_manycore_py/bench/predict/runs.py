@@ -29,6 +29,7 @@ from rmw_manycore_py.profile.model import Profile
 from rmw_manycore_py.trace.files import load as load_trace
 from rmw_manycore_py.whole_file import replacing
 
+_PREDICTED_RUNS = 9  # whose median is compared
 _START_S = 120.0  # within which the nodes of an application have started
 
 
@@ -75,7 +76,9 @@ def compared(plan: Plan, note: Callable[[str], None]) -> list[Compared]:
         for turn in range(plan.repetitions):
             note(f"{plan.name}: mapping {number + 1} of {plan.mappings}, run {turn + 1}")
             runs.append(measured(plan, mapping, turn))
-        predicted = predicted_figures(mapping, profile, plan.duration_s * 6, plan.seed)
+        predicted = predicted_figures(
+            mapping, profile, plan.duration_s, range(plan.seed, plan.seed + _PREDICTED_RUNS)
+        )
         found.append(Compared(number, runs, predicted))
     return found
 
