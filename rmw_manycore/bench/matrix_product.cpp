@@ -57,7 +57,7 @@ void multiply_rows(const Tile & tile, size_t first, size_t last, bool is_evicted
   }
 }
 
-/// A worker: sleeps until product `number` is ordered, computes its rows, and says so.
+/// A worker: sleeps until product `number` is ordered, computes its rows, and reports it.
 struct Worker {
   Slot * order;
   Slot * done;

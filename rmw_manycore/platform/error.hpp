@@ -18,7 +18,7 @@ enum class ErrorCode {
   system,            ///< any other operating-system error
 };
 
-/// The exception of all layers below rmw. Its text says what to do.
+/// The exception of all layers below rmw. Its text names the cure.
 class Error : public std::runtime_error {
 public:
   Error(ErrorCode code, const std::string & what) : std::runtime_error(what), code_(code) {}

@@ -95,7 +95,7 @@ INTERPOSED int rcutils_system_time_now(int64_t * now) {
   return 0;
 }
 
-/// The time of a node with use_sim_time is the virtual one, not what /clock said last: its timers
+/// The time of a node with use_sim_time is the virtual one, not the last one of /clock: its timers
 /// then have due times like all others.
 INTERPOSED int rcl_enable_ros_time_override(void * clock) {
   if (Member::find() != nullptr) {

@@ -20,7 +20,7 @@ constexpr int64_t never_ns = INT64_MAX;
 
 /// | from    | to      | by                                               |
 /// |---------|---------|--------------------------------------------------|
-/// | free    | running | a thread that took it, and has written who it is |
+/// | free    | running | a thread that took it, and has written its ids |
 /// | running | waiting | that thread, once it has written its wait        |
 /// | waiting | running | the timekeeper; the thread itself at the end     |
 /// | running | free    | the thread at its end; the timekeeper, when      |
@@ -31,7 +31,7 @@ enum SeatState : uint32_t { seat_free, seat_running, seat_waiting };
 /// timekeeper reads them while the thread waits.
 struct alignas(64) Seat {
   FutexWord state;
-  std::atomic<int32_t> pid;  ///< set from 0 by who takes the seat: old content is not read
+  std::atomic<int32_t> pid;  ///< set from 0 by its thread: old content is not read
   int32_t tid;               ///< of another thread before
   uint32_t rank;             ///< order of the program in the run
   uint32_t ordinal;          ///< order of the thread in its process
@@ -39,7 +39,7 @@ struct alignas(64) Seat {
   uint32_t word;
   uint32_t seen;  ///< epoch of that word
   int64_t due_ns;
-  Step next;  ///< unless `none`, the model says when the wait is over
+  Step next;  ///< unless `none`, the model decides when the wait is over
   uint64_t subject;
 
   /// The order in which seats that are ready go on.
@@ -61,7 +61,7 @@ struct Page {
   int32_t timekeeper;
   /// Virtual nanoseconds per nanosecond of CPU time; 0: callbacks take no time.
   double factor;
-  uint32_t is_modelled;  ///< callbacks take the time that the model of the platform says
+  uint32_t is_modelled;  ///< callbacks take the time that the platform model predicts
   alignas(64) Seat seats[seat_capacity];
 
   /// Lets time run at the pace of the wall clock, from the first call on.

@@ -41,7 +41,7 @@ class Ends:
 
 
 class Application:
-    """Nodes of a mapfile, with what a profile says of them.
+    """Nodes of a mapfile, with their parts of a profile.
 
     :ivar not_profiled: nodes of the mapfile that the profile does not have.
     :ivar not_placed: nodes of the profile that the mapfile does not have.

@@ -18,7 +18,7 @@ class Unit:
     :param load_cpus: CPUs that its callbacks keep busy, on the machine of the profile.
     :param size_bytes: memory that its endpoints take of its cluster.
     :param cluster: where it is in the mapfile.
-    :param core: where the mapfile says so.
+    :param core: where the mapfile names it.
     :param is_bridge: whether it cannot move, and takes no core of nodes.
     """
 

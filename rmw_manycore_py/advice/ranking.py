@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Mappings in the order of what a simulation says of them."""
+"""Mappings ranked by their simulation."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a profile says against a mapping, without a search for a better one."""
+"""Faults of a mapping by its profile, without a search for a better one."""
 
 from __future__ import annotations
 

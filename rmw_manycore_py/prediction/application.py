@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a profile says about the parts of a simulation: executors, callbacks and their demands."""
+"""What a profile has about the parts of a simulation: executors, callbacks and their demands."""
 
 from __future__ import annotations
 

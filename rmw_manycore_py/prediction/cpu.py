@@ -132,7 +132,7 @@ class Cpu:
         self._go_on()
 
     def _go_on(self) -> None:
-        """Decide who runs on."""
+        """Decide which task runs on."""
         current = self.current
         assert current is not None
         if not self.waiting:

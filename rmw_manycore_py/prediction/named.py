@@ -42,7 +42,7 @@ class Takes:
 class Passed:
     """All messages of a run, real or simulated.
 
-    :ivar published: by publisher; `node_of` says whose it is.
+    :ivar published: by publisher; `node_of` has its node.
     :ivar taken: by node and topic.
     """
 

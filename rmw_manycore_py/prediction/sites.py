@@ -26,7 +26,7 @@ class Site:
 
 @dataclass(frozen=True)
 class Sites:
-    """Places of nodes by full name, and what the mapfile says about topics.
+    """Places of nodes by full name, and the mapfile's settings of topics.
 
     :ivar receive_cpus: host CPU of the receive thread of each cluster.
     :ivar receive_priorities: real-time priority of the receive thread of each cluster; 0 = none.

@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """What a platform adds to an application: CPUs, and what a message costs there.
 
-Each parameter says where its value comes from. docs/design/prediction.md explains them.
+Each parameter has the source of its value. docs/design/prediction.md explains them.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@
 
 namespace manycore::ndt {
 
-/// What a map says about one point of a scan.
+/// Evidence of a map about one point of a scan.
 struct PointEvidence {
   float score;           ///< of the best voxel in range; NaN without one
   float height_m;        ///< above the lowest voxel of the point's column; NaN where that is empty

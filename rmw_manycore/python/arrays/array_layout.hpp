@@ -25,7 +25,7 @@ inline ArrayObject & as_array(PyObject * object) noexcept {
   return *reinterpret_cast<ArrayObject *>(object);
 }
 
-/// Compares known arrays with the layout above. Null if it is right, else what is wrong.
+/// Compares known arrays with the layout above. Null if it is right, else the fault.
 const char * find_fault_in_layout(PyTypeObject * array_type);
 
 }  // namespace rmw_manycore

@@ -28,7 +28,7 @@ struct MessageType {
   const void * type_support;
   std::vector<Field> fields;
   ArrayTypes arrays;
-  bool is_read_only;  ///< unless a topic says otherwise: taken arrays are
+  bool is_read_only;  ///< default of taken arrays; a topic may override it
 
   void * create() const noexcept;
   void destroy(void * message) const noexcept;

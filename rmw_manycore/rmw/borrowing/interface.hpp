@@ -30,8 +30,8 @@ struct BorrowedSequence {
 /// function below. Thread-safe; nothing throws.
 struct BorrowingInterface {
   /// From now on rmw_take leaves large sequences of numbers of `message` in the record, if it can:
-  /// the message gets a few elements of them. `is_read_only` unless the topic says otherwise:
-  /// whether its owner only reads them. False for want of memory.
+  /// the message gets a few elements of them. `is_read_only`: whether its
+  /// owner only reads them, unless the topic has another mode. False for want of memory.
   bool (*adopt)(void * message, bool is_read_only) noexcept;
   /// Ends this, and gives back the record if it is still held. Before the message is destroyed.
   void (*forget)(void * message) noexcept;

@@ -5,7 +5,7 @@
 
 namespace rmw_manycore {
 
-/// Throw manycore::Error{invalid_argument} that says why the name is invalid.
+/// Throw manycore::Error{invalid_argument} with the reason if the name is invalid.
 void check_node_name(const char * name);
 void check_namespace(const char * ns);
 /// Checks the fully qualified name of a topic or service.

@@ -34,7 +34,7 @@ std::string private_platform(size_t domain_id) {
          std::to_string(own.start_time) + "-" + std::to_string(own.pid_namespace);
 }
 
-/// Says that a context which was given another domain than ROS_DOMAIN_ID is not on the named
+/// Warns that a context which was given another domain than ROS_DOMAIN_ID is not on the named
 /// platform: its author may have expected it there.
 void warn_if_beside(const manycore::Placement & placement, size_t domain_id) {
   const char * const named = std::getenv("MANYCORE_PLATFORM");
@@ -70,7 +70,7 @@ manycore::Placement placement_of(const rmw_init_options_t & options, size_t doma
   return placement;
 }
 
-/// Says that processes share a core: started by hand, one may have been meant for another. A
+/// Warns that processes share a core: started by hand, one may have been meant for another. A
 /// mapfile that allows it sets MANYCORE_SHARED_CORE.
 void warn_if_shared(const manycore::Process & process) {
   const char * const is_meant = std::getenv("MANYCORE_SHARED_CORE");

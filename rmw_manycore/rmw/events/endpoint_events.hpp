@@ -16,7 +16,7 @@
 namespace rmw_manycore {
 
 /// The events of one publisher or subscription. The transport counts occurrences; this class
-/// remembers which of them the user has been told. `rmw_event_t::data` points to it. Thread-safe.
+/// remembers which were reported to the user. `rmw_event_t::data` points to it. Thread-safe.
 class EndpointEvents {
 public:
   explicit EndpointEvents(CallbackThread & thread) noexcept : thread_(thread) {}

@@ -37,7 +37,7 @@ public:
     std::optional<MessageTopic> topic = std::nullopt;
     uint32_t endpoint = 0;              ///< slot of the subscription
     std::function<Known()> known = {};  ///< thread-safe
-    // Of events, which wake those who wait for them when the function has been called:
+    // Of events, which wake threads that wait for them when the function has been called:
     std::function<void()> notify_called = {};  ///< thread-safe; may outlive the entity
   };
 

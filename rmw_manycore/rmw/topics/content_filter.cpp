@@ -2,7 +2,7 @@
 #include "rmw/common/checks.hpp"
 #include "rmw/rmw.h"
 
-// Filtering is up to the caller, as `is_cft_enabled` of each subscription says.
+// Filtering is up to the caller, as `is_cft_enabled` of each subscription reports.
 
 namespace {
 

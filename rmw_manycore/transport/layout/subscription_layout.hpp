@@ -78,7 +78,7 @@ struct SubscriptionHeader {
 static_assert(sizeof(SubscriptionHeader) == 256);
 static_assert(offsetof(SubscriptionHeader, missed_beside_displaced) == 32);
 
-/// Size of a subscription's head with a queue of so many slots.
+/// Size of a subscription's head with a queue of 2^`slot_count_log2` slots.
 constexpr uint64_t subscription_block_bytes(uint32_t slot_count_log2) noexcept {
   return sizeof(SubscriptionHeader) + (uint64_t{8} << (slot_count_log2 & 31));
 }

@@ -16,7 +16,7 @@ enum class Transfer : uint8_t {
   async,    ///< the publisher puts them into the receiving cluster itself
 };
 
-/// The part of a topic's configuration that says how it is transferred.
+/// How a topic is transferred: a part of its configuration.
 struct TransferSettings {
   Transfer kind = Transfer::dsm;
   uint8_t priority = 0;     ///< message: 0 to 7, the highest is received first
@@ -94,7 +94,7 @@ struct CopyRequest {
 };
 static_assert(sizeof(CopyRequest) == 128 && sizeof(CopyRequest) <= PIPE_BUF);
 
-/// Sessions of a cluster in each direction, as a NoC interface of the MPPA has so many UC.
+/// Sessions of a cluster in each direction, as many as a NoC interface of the MPPA has UC.
 constexpr uint32_t max_sessions = 8;
 
 }  // namespace manycore

@@ -17,8 +17,8 @@ public:
 /// Removes the files of a dead platform, whatever their state, and returns their paths. Ends
 /// receive threads that are left without processes.
 ///
-/// Lifelines prove who lives. Where they are damaged, or with `force` not believed, a process
-/// counts as living if it is visible here and maps a file of the platform.
+/// Lifelines prove which processes live. Where they are damaged, or with `force` not believed,
+/// a process counts as living if it is visible here and maps a file of the platform.
 ///
 /// Throws PlatformInUse, and Error{system} if files cannot be removed.
 std::vector<std::string> clean_platform(const std::string & platform, bool force = false);

@@ -55,7 +55,7 @@ private:
   FileDescriptor files_;  ///< inotify: files of the platform were removed
   std::map<pid_t, FileDescriptor> watched_;
   bool some_unwatched_ = false;  ///< in another PID namespace, or no file descriptor was left
-  bool is_any_in_use_ = false;   ///< some memory cannot be freed yet: no event tells when it can
+  bool is_any_in_use_ = false;   ///< some memory cannot be freed yet: no event signals when it can
   std::mutex mutex_;             ///< guards the following two
   std::bitset<process_capacity> joined_;  ///< slots passed to rescan(), not watched yet
   bool must_check_all_ = true;

@@ -9,7 +9,7 @@ namespace manycore {
 void leave_graph(Registry & registry, uint32_t endpoint) noexcept;
 
 /// Closes all endpoints of a process that creates no more of them, each in a hold of the registry
-/// lock of its own, as long as `may_go_on` says under the lock. False if it said no. `died`: see
+/// lock of its own, while `may_go_on` returns true under the lock. False if it did not. `died`: see
 /// closing::close(). Throws ClusterUnmappable, once all others are closed, if an endpoint could not
 /// be.
 bool close_endpoints_of(

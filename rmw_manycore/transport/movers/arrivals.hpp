@@ -26,7 +26,7 @@ std::optional<Destination> destination_of(
 /// stranger's.
 bool is_awaited(const Destination & to, uint64_t number) noexcept;
 
-/// The record is in its landing: tells the receive thread.
+/// The record is in its landing: notifies the receive thread.
 void note_arrival(
   Registry & registry, const Destination & to, const EmcosMessage & announcement) noexcept;
 

@@ -46,8 +46,8 @@ void CopyMover::handle(const CopyRequest & request) noexcept {
 }
 
 /// The publisher takes the number out of the descriptor before it writes over the bytes. So a
-/// number that is still there after the copy says that the copy is whole (acquire fence: the bytes
-/// were read before it).
+/// number that is still there after the copy proves that it is whole (acquire fence: the bytes were
+/// read before it).
 bool CopyMover::copy(const CopyRequest & request, const Destination & to) const noexcept {
   const uint64_t number = request.announcement.number;
   const GenerationEntry & only = to.dsm.generations[0];

@@ -20,7 +20,7 @@ struct Announcement {
 /// Step 1 of ROS-lite2 Fig. 4, last part: pushes a hint to each reader of the `own` cluster and
 /// wakes its process; sends one eMCOS message to each other cluster with a reader. Never blocks: if
 /// a pipe is full, the readers behind it are set to resync. Only a `sender` of synchronous records
-/// blocks, at most as long as it says.
+/// blocks, at most for its timeout.
 void announce(
   Registry & registry, const Cluster & own, const ReaderList & list,
   const Announcement & announcement, TransferSender & sender) noexcept;

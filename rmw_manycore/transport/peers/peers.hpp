@@ -9,7 +9,7 @@
 
 namespace manycore {
 
-/// An endpoint at the other end, as its row says.
+/// An endpoint at the other end, as in its row.
 struct Peer {
   uint32_t slot;
   uint32_t incarnation;

@@ -16,7 +16,7 @@ bool ManualLiveliness::assert_now() noexcept {
   // seq_cst, before the caller loads the watchers: a waiting thread registers before it loads this.
   asserted_ns_.store(qos_now_ns(), std::memory_order_seq_cst);
   // The clock is read again: a thread that looked just before the store may have found that the
-  // lease had run out by then, and has to be told that it has not.
+  // lease had run out by then, and has to learn that it has not.
   return before_ns == never || ran_out(before_ns);
 }
 

@@ -20,7 +20,7 @@ public:
   /// Keeps the generation that begins with a record, but no record.
   static uint64_t generation(const Hint & first) noexcept { return whole | of(first); }
 
-  /// Of one publisher: tells what is looked at.
+  /// Records of one publisher: announces which one is read.
   Reading(uint32_t publisher, uint32_t incarnation) noexcept
   : of_publisher_(of({publisher, incarnation, 0})) {}
 

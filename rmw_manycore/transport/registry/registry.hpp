@@ -197,7 +197,7 @@ public:
   void walk_bucket(
     uint64_t topic_hash, const std::function<bool(uint32_t, uint32_t)> & visit) const;
 
-  /// Tells the endpoints of a bucket to look at its rows. The caller holds the lock.
+  /// Makes the endpoints of a bucket look at its rows. The caller holds the lock.
   void raise_changes(uint64_t topic_hash) noexcept;
   /// seq_cst: the caller has stored what a process checks that changed a row.
   uint64_t changes_of(uint64_t topic_hash) const noexcept;

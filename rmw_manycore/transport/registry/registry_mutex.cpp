@@ -22,8 +22,8 @@ RegistryMutex::RegistryMutex(
   threads_.initialize();
 }
 
-/// The thread has ended when the kernel has marked what it held. The line tells more: while it
-/// is held, its badge's owner lives, though another mark may mislead the kernel (see RobustMutex).
+/// The thread has ended when the kernel has marked what it held. The line proves more: while
+/// it is held, its badge's owner lives, though another mark may mislead the kernel (see RobustMutex).
 /// A badge that does not exist is a damaged ticket, which no thread will give back.
 bool RegistryMutex::has_ended(uint32_t badge) const {
   if (badge >= lock_badge_count) {

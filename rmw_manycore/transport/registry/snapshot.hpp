@@ -49,7 +49,7 @@ private:
   static_assert(sizeof(Entry) % sizeof(Word) == 0);
 
   /// Runs concurrently with the writer, whose stores are not atomic: each word is loaded once, and
-  /// holds() tells whether the words belong together. Volatile because sanitizers instrument
+  /// holds() checks that the words belong together. Volatile because sanitizers instrument
   /// atomics even here.
   __attribute__((no_sanitize("thread"))) void copy_words(const Entry * entry) noexcept {
     const auto * const from = reinterpret_cast<const volatile Word *>(entry);

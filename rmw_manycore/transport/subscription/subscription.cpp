@@ -155,7 +155,7 @@ uint64_t Subscription::arrivals() const noexcept {
     try {
       impl.finder.resync_if_asked();
     } catch (const std::bad_alloc &) {
-      // A take tells of it, or does it.
+      // A take reports it, or does it.
     }
   }
   return impl.finder.arrivals();

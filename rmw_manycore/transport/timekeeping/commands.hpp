@@ -7,7 +7,7 @@
 
 namespace manycore {
 
-/// What the run tells its timekeeper, one line each.
+/// Commands of the run to its timekeeper, one line each.
 struct Command {
   enum class Kind {
     start,   ///< `start RANK PID NAME`: the program's process exists; time stands until it joined

@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// Part of Timekeeper: threads whose steps take the time that the model of the platform says.
+// Part of Timekeeper: threads whose steps take the time that the platform model predicts.
 
 #include <algorithm>
 #include <map>
@@ -35,7 +35,7 @@ std::string Timekeeper::words_of(const Seat & seat) const {
   }
 }
 
-/// Tells the model what the threads do next that have settled, in the order of threads.
+/// Gives the model the next steps of the threads that have settled, in the order of threads.
 void Timekeeper::ask_model() {
   if (model_ == nullptr) {
     return;

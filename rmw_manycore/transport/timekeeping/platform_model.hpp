@@ -26,7 +26,7 @@ public:
     std::optional<Thread> done;
   };
 
-  /// Tells what a thread does next, at the time of the last answer.
+  /// Gives the next step of a thread, at the time of the last answer.
   void ask(const Thread & thread, const std::string & what);
   /// Lets time pass, `until_ns` at the latest, until a thread is done. It keeps its CPU if it is
   /// asked for again before resume().

@@ -22,10 +22,10 @@ namespace manycore {
 /// (docs/design/virtual_time.md). The only writer of the time. Model: docs/model/virtual_time.pml.
 class Timekeeper {
 public:
-  /// `model`: of the platform; nullptr: callbacks take what the page says.
+  /// `model`: of the platform; nullptr: callbacks take the time in the page.
   Timekeeper(Registry & registry, virtual_time::Page & page, PlatformModel * model);
 
-  /// Runs until told that it is over; then time goes on at the pace of the wall clock.
+  /// Runs until the run is over; then time goes on at the pace of the wall clock.
   void run();
 
 private:
@@ -44,7 +44,7 @@ private:
     enum class State {
       starting,  ///< time stands until a process of it joins
       joined,
-      ended,  ///< time stands until the run says whether it is started again
+      ended,  ///< time stands until the run decides whether it is started again
       gone,
     };
     std::string name;

@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 // manycore_timekeeper PLATFORM FACTOR [TO_MODEL FROM_MODEL]: keeps the virtual time of a run.
-// Started by `manycore run`, which tells it over standard input what it starts, and reads what it
+// Started by `manycore run`, which names over standard input what it starts, and reads what it
 // reports. The last two are file descriptors.
 
 #include <sys/prctl.h>

@@ -32,7 +32,7 @@ public:
     return sum;
   }
 
-  /// Finds the chunks that are unused by now: `state_of(const Block &)` says which. Looks at the
+  /// Finds the chunks that are unused by now, by `state_of(const Block &)`. Looks at the
   /// records in order, up to the first that is wanted: readers take them in this order.
   template<typename StateOf>
   void collect(StateOf state_of) {

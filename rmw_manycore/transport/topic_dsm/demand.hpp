@@ -6,7 +6,7 @@
 
 namespace manycore {
 
-/// Peak usage of a publisher's ring over a window of messages; tells whether a smaller ring would
+/// Peak usage of a publisher's ring over a window of messages; shows whether a smaller ring would
 /// do. The window doubles when the ring had to grow again after shrinking, so recurring bursts
 /// resize the ring a few times and then no more.
 class Demand {

@@ -346,12 +346,12 @@ Source::Settled Source::settle() noexcept {
   return is_over ? Settled::finished : is_settled ? Settled::yes : Settled::no;
 }
 
-/// A reader of the history without a seat has not told what it has taken.
+/// A reader of the history without a seat has not stored what it has taken.
 bool Source::is_known_finished() const noexcept {
   return is_finished() && (seat_ != nullptr || !reads_history_);
 }
 
-/// The history of a closed publisher is for those who were there: they were given seats.
+/// The history of a closed publisher is for readers that were there: they were given seats.
 bool Source::may_take() const noexcept {
   return seat_ != nullptr ||
          (reads_history_ && row_->slot.state.load(std::memory_order_acquire) == SlotState::live);

@@ -18,7 +18,7 @@ namespace manycore {
 /// at a time (the subscription's mutex). See docs/design/topic_dsm.md, Take.
 ///
 /// Each look is one word in the subscription's header, `reading`, which names this publisher. After
-/// it is stored, the publisher's row says whether the topic DSM is there
+/// it is stored, the publisher's row shows whether the topic DSM is there
 /// (docs/model/topic_dsm.pml).
 class Source {
 public:

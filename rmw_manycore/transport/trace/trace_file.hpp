@@ -24,7 +24,7 @@ struct TraceIdentity {
   std::string label;
 };
 
-/// Tells a receive thread from the one that it replaced, which may have had its pid.
+/// Distinguishes a receive thread from the one that it replaced, which may have had its pid.
 inline uint32_t receive_thread_incarnation(const ProcessIdentity & holder) {
   return static_cast<uint32_t>(holder.start_time);
 }

@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// Part of transfer.hpp: what is configured.
+// Part of transfer.hpp: the configured kind.
 #include "platform/error.hpp"
 #include "transport/transfer/transfer.hpp"
 

@@ -15,7 +15,7 @@ void raise(std::atomic<uint64_t> & highest, uint64_t number) noexcept {
 
 }  // namespace
 
-/// Its sizes are those of the topic DSM, not what the landing itself says.
+/// Its sizes are those of the topic DSM, not those in the landing itself.
 Landing Landing::of(
   const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver) noexcept {
   LandingTable * const table = landing_table(cluster, dsm);
@@ -48,7 +48,7 @@ uint8_t * Landing::find(const RecordPlace & place) const noexcept {
 }
 
 /// Read against the order of the writers: `closed` and `done` are stored last. `closed` once more
-/// in the end: a record that was dropped meanwhile is not told, if another one was under way.
+/// in the end: a record that was dropped meanwhile is not reported, if another one was under way.
 bool Landing::is_settled(uint64_t published, uint64_t known) const noexcept {
   const bool is_closed = header_->closed.load(std::memory_order_seq_cst) >= published;
   const uint64_t handed = header_->handed.load(std::memory_order_seq_cst);

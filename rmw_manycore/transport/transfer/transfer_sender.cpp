@@ -72,8 +72,8 @@ void TransferSender::note_dropped(uint32_t cluster) noexcept {
   registry_.tracer().note(TraceKind::drop, dsm_.endpoint.load(), number_, cluster);
 }
 
-/// Telling wakes the whole cluster, so of the drops in a row the first one is told. The others are
-/// found by the subscriptions after a record that is still under way. Dekker with the mover:
+/// A report wakes the whole cluster, so only the first of the drops in a row is reported. The others
+/// are found by the subscriptions after a record that is still under way. Dekker with the mover:
 /// `closed` was stored before `done` is loaded here, and a subscription looks at `closed` after the
 /// mover has stored `done`.
 bool TransferSender::is_told_of_drop(const LandingHeader & landing, uint32_t cluster) noexcept {

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Value types of a mapfile; each error says what was expected."""
+"""Value types of a mapfile; each error names what was expected."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SCALARS = (bool, int, float, str)
 
 
 def refusal(text: str, **found: Any) -> PydanticCustomError:
-    """Return a pydantic error that says what was expected."""
+    """Return a pydantic error that names what was expected."""
     return PydanticCustomError("expected", "{expected}", {"expected": text, **found})
 
 

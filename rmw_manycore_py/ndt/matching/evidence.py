@@ -2,7 +2,7 @@
 """How well a scan fits the part of the map that can contradict it.
 
 A mean over all points is low at right poses, too, where vehicles hide the surroundings or the map
-ends. So points are told apart:
+ends. So points are classified:
 
 - *unknown*: their column of the map is empty, or at the map's edge. They say nothing.
 - *foreign*: they fit badly, and stand where a vehicle can. They neither fit nor contradict.

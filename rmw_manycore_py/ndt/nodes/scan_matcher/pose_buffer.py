@@ -36,7 +36,7 @@ class Interpolated:
 
 
 class NoPoseError(LookupError):
-    """The buffer does not determine the pose at a time; the message says why."""
+    """The buffer does not determine the pose at a time; the message has the reason."""
 
 
 class PoseBuffer:

@@ -5,4 +5,4 @@ from __future__ import annotations
 
 
 class Rejected(Exception):  # noqa: N818
-    """A scan or request yields no pose; the message says why."""
+    """A scan or request yields no pose; the message has the reason."""
