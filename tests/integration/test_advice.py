@@ -180,7 +180,7 @@ def test_containers_and_lifecycle_nodes_are_listed(start, manycore, follow, comm
 
 
 @pytest.mark.skipif(not can_mount(), reason="needs a mount namespace, to hide files")
-def test_the_doctor_tells_which_mapfile_is_missing(start, tmp_path) -> None:
+def test_the_doctor_names_the_missing_mapfile(start, tmp_path) -> None:
     mapfiles = installed_mapfiles()["whill"].parent
     script = f'mount -t tmpfs tmpfs {mapfiles} && "$0" whill course "$1"; "$0" doctor'
     manycore = manycore_command()[0]

@@ -233,7 +233,7 @@ def test_nodes_in_virtual_time_keep_their_places(manycore, mapfile, platform) ->
     manycore("stop")
 
 
-def test_a_restart_says_which_place_it_keeps(manycore, mapfile, platform) -> None:
+def test_a_restart_reports_the_place_it_keeps(manycore, mapfile, platform) -> None:
     write(mapfile, one=f"cluster: 1, {SLEEP}", two=f"cluster: 1, {SLEEP}")
     manycore("up", "-d", "--node", "one", mapfile)
     assert "notice" not in manycore("restart", "one").output, "two is no change"

@@ -43,7 +43,7 @@ def change_while_looking(platform: str) -> None:
     announce("stopped")
 
 
-def test_a_change_while_it_looks_is_looked_at(bridge) -> None:
+def test_a_change_during_a_check_is_checked(bridge) -> None:
     peer = bridge.outside(change_while_looking, bridge.platform)
     peer.wait_for("^looked again: True$", 2 * TIMEOUT_S)
     peer.wait_for("^stopped$")

@@ -14,7 +14,7 @@ from support.processes.commands import manycore_command
 pytestmark = pytest.mark.integration
 
 
-def test_the_demo_runs_and_says_what_there_is_to_see(start, tmp_path: Path) -> None:
+def test_the_demo_runs_and_describes_its_output(start, tmp_path: Path) -> None:
     demo = start(manycore_command("demo", "--duration", "60"), directory=tmp_path)
     demo.wait_for("a talker on core 1 of cluster 1, a listener on core 1 of cluster 2")
     demo.wait_for("listener .*I heard")

@@ -83,7 +83,7 @@ def shell(platform: str) -> Iterator[dict[str, str]]:
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_a_page_does_what_it_says(page, start, shell, tmp_path: Path) -> None:
+def test_a_pages_script_runs_as_documented(page, start, shell, tmp_path: Path) -> None:
     typed = re.sub(r"--duration \d+", DURATION, script(DOCS / page))
     command = ["bash", "-c", STRICT + typed]
     reader = start(command, directory=tmp_path, PATH=shell["PATH"])

@@ -181,7 +181,7 @@ def test_users_of_the_python_api_have_types(place: Place, examples: Path) -> Non
     run(*command, *sorted(examples.glob("*.py")), cwd=place.directory)
 
 
-def test_messages_are_found_where_pythonpath_says(
+def test_messages_are_found_on_pythonpath(
     installation: Installation, start: Start, tmp_path: Path
 ) -> None:
     installation.install("--no-deps", "--prefix", tmp_path, TEST_MSGS)

@@ -119,7 +119,7 @@ def test_list_shows_which_package_wins(built: dict[str, str]) -> None:
     assert found.startswith(sys.prefix)
 
 
-def test_a_mapfile_says_what_is_built(start, sources, tmp_path, monkeypatch) -> None:
+def test_a_mapfile_selects_what_is_built(start, sources, tmp_path, monkeypatch) -> None:
     monkeypatch.setenv("MANYCORE_INTERFACES", str(tmp_path / "built"))
     (tmp_path / "map.yaml").write_text(MAPFILE)
     (tmp_path / "reader.py").write_text(READER)

@@ -236,7 +236,7 @@ def test_cores_that_are_not_there_are_refused(make: Callable[[], Any], message: 
         make()
 
 
-def test_a_closed_matcher_says_so() -> None:
+def test_a_closed_matcher_raises() -> None:
     matcher = workers(1)
     matcher.close()
     matcher.close()

@@ -51,7 +51,7 @@ def of_kind(profile: Profile, kind: str) -> Callback:
     return found
 
 
-def test_a_profile_says_what_nodes_do(start, tmp_path: Path, platform) -> None:
+def test_a_profile_describes_the_nodes(start, tmp_path: Path, platform) -> None:
     (tmp_path / "worker.py").write_text(NODE)
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text("nodes:\n  worker: {cluster: 1, core: 1, script: worker.py}\n")

@@ -150,7 +150,7 @@ def test_a_publisher_that_offers_less_is_heard_too(start, platform, tmp_path) ->
     assert "lost" not in recorder.output
 
 
-def test_a_player_keeps_order_and_rate_and_tells_the_time(start, tmp_path) -> None:
+def test_a_player_keeps_order_and_rate_and_publishes_the_clock(start, tmp_path) -> None:
     """The player publishes /clock at its own rate, and plays from the offset for the duration."""
     texts = [("/a", 20.0 * n, f"text {n}") for n in range(8)]
     bag = write_texts(tmp_path / "a.mcap", texts, each=2)

@@ -106,7 +106,7 @@ def place(process: _transport.ProcessInfo) -> tuple[int, int | None, list[int]]:
     return process.cluster, process.core, sorted(cpus)
 
 
-def test_nodes_of_a_launch_file_run_where_the_mapfile_says(launch, platform) -> None:
+def test_nodes_of_a_launch_file_run_where_the_mapfile_places_them(launch, platform) -> None:
     mapfile = (
         f"platform: {{profile: coolidge, name: {platform}}}\nnodes:\n"
         f"  one: {{cluster: 2, core: 3, host_cpu: {CPUS[-1]}}}\n"

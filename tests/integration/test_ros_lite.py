@@ -139,7 +139,7 @@ def test_bad_parameters_end_the_node_with_an_error(
     assert "Traceback" not in run.output
 
 
-def test_tiles_that_fit_no_smem_are_an_error_that_says_how_much(
+def test_tiles_that_fit_no_smem_are_an_error_with_the_size(
     start: Start, platform: str, map_path: Path, tmp_path: Path
 ) -> None:
     variant = installed(AFTER)

@@ -90,7 +90,7 @@ def test_fast_dds_is_not_loaded(start):
     assert "fastrtps.so.2" not in libraries or "standin" in libraries
 
 
-def test_the_middleware_says_its_name(platform):
+def test_the_middleware_identifies_itself(platform):
     code = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
     command = [sys.executable, "-c", code]
     name = subprocess.check_output(command, env=environment(platform), text=True)

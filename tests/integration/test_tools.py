@@ -127,7 +127,7 @@ def test_the_rate_is_printed_as_ros2_does(running, start) -> None:
     assert hz.stop() == 0
 
 
-def test_status_shows_who_runs_where(running, manycore, platform) -> None:
+def test_status_shows_the_places_of_processes(running, manycore, platform) -> None:
     def row() -> dict[str, Any]:
         return json.loads(manycore("status", "--platform", platform, "--json"))[0]
 

@@ -257,7 +257,7 @@ def test_a_message_outlives_its_subscription(member: transport.Member, ends: End
     message.release()
 
 
-def test_the_environment_says_where(platform: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_environment_chooses_the_place(platform: str, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in (("PLATFORM", platform), ("CLUSTER", "3"), ("CORE", "2"), ("WAIT", "spin")):
         monkeypatch.setenv(f"MANYCORE_{name}", value)
     with transport.join() as member:

@@ -244,7 +244,7 @@ def publish_bursts() -> None:
         rclpy.spin(node)
 
 
-def test_echo_tells_of_lost_messages(start) -> None:
+def test_echo_reports_lost_messages(start) -> None:
     start(peer_command(publish_bursts)).wait_for("ready")
     echo = ("topic", "echo", "/bursts", "--qos-depth", "2")
     told = start(manycore_command(*echo))

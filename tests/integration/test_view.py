@@ -95,7 +95,7 @@ def test_only_files_of_the_page_are_answered(view) -> None:
 
 @pytest.mark.needs("setpriv", "curl")
 @pytest.mark.skipif(os.geteuid() != 0, reason="needs another user")
-def test_another_user_who_has_seen_the_link_is_refused(view) -> None:
+def test_another_user_with_the_link_is_refused(view) -> None:
     """With `--open` it is an argument of the browser, which `ps` shows to all users."""
     link = view[1]
     origin = link.rsplit("/", 2)[0]

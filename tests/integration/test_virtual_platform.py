@@ -38,7 +38,7 @@ CASES = {"across": (2, 1.0), "shared": (1, 1.0), "slow": (2, 0.5)}
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_a_chain_takes_what_the_simulator_says(case: str, tmp_path: Path, start) -> None:
+def test_a_chain_takes_the_simulated_time(case: str, tmp_path: Path, start) -> None:
     cluster, speed = CASES[case]
     mapfile, profile, platform = (tmp_path / name for name in ("map.yaml", "p.json", "target.yaml"))
     node = f"{sys.executable}, {timed.__file__}"

@@ -269,7 +269,7 @@ def test_best_available_deadline_and_liveliness(node):
     check_times_are_those_of_manual(profile_of(node.get_publishers_info_by_topic("requested")))
 
 
-def test_best_available_where_nobody_is(node):
+def test_best_available_without_peers(node):
     """Without a publisher, best available resolves to the strongest policies."""
     node.create_subscription(
         String, "chatter", lambda _: None, QoSPresetProfiles.BEST_AVAILABLE.value

@@ -258,7 +258,7 @@ def test_weaker_liveliness_is_incompatible(node):
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS tells of liveliness only with a lease")
-def test_default_liveliness_follows_who_comes_and_goes(node):
+def test_default_liveliness_follows_matches(node):
     changes = []
     subscribe(node, 10, liveliness=changes.append)
     publisher = node.create_publisher(String, "chatter", 10)

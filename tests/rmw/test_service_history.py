@@ -106,7 +106,7 @@ def test_keep_all_displaces_nothing(node, other_node):
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="sizes are of platforms")
-def test_keep_all_tells_the_client_that_there_is_no_room(small_topic):
+def test_keep_all_fails_for_a_client_without_room(small_topic):
     node = rclpy.create_node("tester")
     server = Server(node, KEEP_ALL, small_topic)
     client = node.create_client(BasicTypes, small_topic, qos_profile=KEEP_ALL)

@@ -187,7 +187,7 @@ def test_the_gate_holds_passes_stops_and_is_cleared(node, start):
     bench.until(told(1.2, 0.0), ask)
 
 
-def test_the_gate_passes_the_gear_and_tells_its_state(node, start):
+def test_the_gate_passes_the_gear_and_publishes_its_state(node, start):
     bench = Bench(node, start, "vehicle_cmd_gate")
     gears = bench.hear(GearCommand, "output/gear_cmd")
     engagements, modes = (

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.unit
 FAULT = "Python runs without a global interpreter lock"
 
 
-def test_a_python_that_cannot_have_it_copies_and_says_so_once(
+def test_a_python_without_it_copies_and_warns_once(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The compiled module of a free-threaded build returns this fault and nothing else."""

@@ -67,7 +67,7 @@ def test_a_file_gets_few_lines_and_the_log_all(tmp_path: Path) -> None:
     assert "Building CXX object b.o" in (tmp_path / "log").read_text()
 
 
-def test_a_failure_shows_what_the_compiler_said(tmp_path: Path) -> None:
+def test_a_failure_shows_the_compilers_output(tmp_path: Path) -> None:
     result = subprocess.run(command(tmp_path, BROKEN), capture_output=True, text=True)
     assert result.returncode == 3
     assert "compiling: failed in " in result.stdout

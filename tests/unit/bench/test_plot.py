@@ -91,7 +91,7 @@ def test_the_table_has_curve_and_spread(tmp_path: Path) -> None:
     ],
     ids=["bench", "replay"],
 )
-def test_a_missing_matplotlib_is_said_before_the_run(
+def test_a_missing_matplotlib_is_reported_before_the_run(
     command: tuple[str, ...], tmp_path: Path
 ) -> None:
     (tmp_path / "drive.npz").touch()

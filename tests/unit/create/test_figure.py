@@ -22,7 +22,7 @@ def test_lines_by_hand_are_those_of_the_papers_formula() -> None:
     assert (lines[0], lines[1], lines[50]) == (0, 10 + 15 + 6 * 15, 5750)
 
 
-def test_the_papers_set_of_nodes_takes_fewer_lines_than_the_paper_says() -> None:
+def test_the_papers_set_of_nodes_takes_fewer_lines_than_in_the_paper() -> None:
     """Return the figures stated in docs/reference/benchmarks/reference_system.md."""
     dot = dot_of(MAPFILES / "autoware_reference.yaml")
     assert (dot.nodes, dot.written_lines, dot.delta_loc) == (24, 76, 626)

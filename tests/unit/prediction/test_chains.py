@@ -28,7 +28,7 @@ HOST = TARGETS["host"]
 
 
 @pytest.mark.parametrize("suffix", [".json", ".csv"])
-def test_the_trace_tells_the_same_as_the_prediction(tmp_path: Path, suffix: str) -> None:
+def test_the_trace_agrees_with_the_prediction(tmp_path: Path, suffix: str) -> None:
     prediction = predict(sites(1, 2, 3), pipeline(), HOST, duration_s=10, is_traced=True)
     assert prediction.trace is not None
     save(prediction.trace, tmp_path / f"trace{suffix}")

@@ -39,7 +39,7 @@ def test_system_users_are_spared(root):
     assert check_logout(root, 0).verdict is Verdict.OK
 
 
-def test_a_user_who_lingers_is_spared(root):
+def test_a_lingering_user_gets_no_warning(root):
     (root / "var/lib/systemd/linger").mkdir(parents=True)
     (root / "var/lib/systemd/linger" / str(PERSON)).touch()
     assert check_logout(root, PERSON).verdict is Verdict.OK

@@ -35,7 +35,7 @@ def test_a_path_to_nothing_is_refused(path: str, error: str) -> None:
     assert caught.value.exit_status == EXIT_BAD_INPUT
 
 
-def test_a_filter_looks_at_the_message() -> None:
+def test_a_filter_reads_the_message() -> None:
     assert message_filter(None)(PoseStamped())
     assert not message_filter("m.pose.position.x > 1")(PoseStamped())
     assert message_filter("m.pose.orientation.w == 1")(PoseStamped())

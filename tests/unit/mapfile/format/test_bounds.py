@@ -19,7 +19,7 @@ def data_of(text: str) -> Any:
     return parse_yaml(text, Path("file.yaml")).data
 
 
-def test_a_file_may_have_so_many_bytes(tmp_path: Path) -> None:
+def test_a_file_size_is_limited(tmp_path: Path) -> None:
     file = tmp_path / "file.yaml"
     file.write_text("a: 1\n".ljust(MAX_BYTES))
     assert read_yaml(file).data == {"a": 1}

@@ -27,7 +27,7 @@ def drive() -> Drive:
     return simulated()["street 1"]()
 
 
-def test_points_are_told_apart():
+def test_points_are_classified():
     voxel_map = VoxelMap.from_points(street(), DEFAULT)
     at = pose(36.0, 0.0, 1.8, 0.0, 0.0, 0.0)
     points = {

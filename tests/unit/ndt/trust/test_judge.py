@@ -135,7 +135,7 @@ def test_a_new_map_scales_what_was_learned():
     assert judge.level.level == pytest.approx(0.5 * 0.9 * OWN_SCORE)
 
 
-def test_the_motion_tells_repeating_streets_apart():
+def test_the_motion_distinguishes_repeating_streets():
     judge, stamp_s, x = driven()
     period = at(x + 12.0)
     assert "implausible" in judge.judge(stamp_s, aligned(period), period).why

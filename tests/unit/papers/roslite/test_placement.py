@@ -84,7 +84,7 @@ def test_the_clusters_are_those_of_bostan():
 
 @pytest.mark.parametrize("derivatives", [1, 3, 5])
 @pytest.mark.parametrize("searches", [2, 3])
-def test_another_split_has_so_many_clusters(tmp_path, derivatives, searches):
+def test_another_split_has_its_own_number_of_clusters(tmp_path, derivatives, searches):
     variant = with_split(installed(AFTER), derivatives, searches)
     placement = resolve(load_mapfile(write(variant, tmp_path / "split.yaml")))
     placed = Counter(

@@ -37,7 +37,7 @@ def test_each_kind_of_route_is_there_once(tmp_path: Path) -> None:
     assert list(routes((0, 100), system)) == ["same CPU", "other NUMA node"]
 
 
-def test_a_machine_that_says_nothing_has_two_routes(tmp_path: Path) -> None:
+def test_a_machine_without_topology_has_two_routes(tmp_path: Path) -> None:
     assert list(routes((0, 1), tmp_path)) == ["same CPU", "same cluster"]
     assert routes((3,), tmp_path) == {"same CPU": Placement(3, 3, 3)}
 
