@@ -28,8 +28,8 @@ class RecoverableMutex {
 public:
   enum class Outcome { locked, owner_died, timed_out };
 
-  /// Reports whether the thread that took the mutex from a badge has ended. The badge may not exist:
-  /// a damaged ticket names any.
+  /// Reports whether the thread that took the mutex from a badge has ended. The badge may not
+  /// exist: a damaged ticket names any.
   using HasEnded = std::function<bool(uint32_t badge)>;
 
   /// Waits at most `timeout_ns`. The calling thread holds the badge, until after unlock(). Passes

@@ -23,7 +23,7 @@ RegistryMutex::RegistryMutex(
 }
 
 /// The thread has ended when the kernel has marked what it held. The line proves more: while
-/// it is held, its badge's owner lives, though another mark may mislead the kernel (see RobustMutex).
+/// it is held, its badge's owner lives, though another mark may mislead the kernel (RobustMutex).
 /// A badge that does not exist is a damaged ticket, which no thread will give back.
 bool RegistryMutex::has_ended(uint32_t badge) const {
   if (badge >= lock_badge_count) {

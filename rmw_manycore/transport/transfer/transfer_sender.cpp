@@ -72,10 +72,10 @@ void TransferSender::note_dropped(uint32_t cluster) noexcept {
   registry_.tracer().note(TraceKind::drop, dsm_.endpoint.load(), number_, cluster);
 }
 
-/// A report wakes the whole cluster, so only the first of the drops in a row is reported. The others
-/// are found by the subscriptions after a record that is still under way. Dekker with the mover:
-/// `closed` was stored before `done` is loaded here, and a subscription looks at `closed` after the
-/// mover has stored `done`.
+/// A report wakes the whole cluster, so only the first of the drops in a row is reported. The
+/// others are found by the subscriptions after a record that is still under way. Dekker with the
+/// mover: `closed` was stored before `done` is loaded here, and a subscription looks at `closed`
+/// after the mover has stored `done`.
 bool TransferSender::is_told_of_drop(const LandingHeader & landing, uint32_t cluster) noexcept {
   const uint64_t bit = uint64_t{1} << (cluster - 1);
   const bool was_dropping = (std::exchange(dropping_, dropping_ | bit) & bit) != 0;
