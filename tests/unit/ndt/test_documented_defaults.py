@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Defaults of parameters and options equal those in the documentation."""
+"""Defaults of parameters equal those in the documentation."""
 
 from __future__ import annotations
 
@@ -8,10 +8,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-import click
 import pytest
 
-from rmw_manycore_py.cli.ndt.simulate import command as simulate
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.nodes.pointcloud_map_loader import LoaderParameters
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
@@ -63,14 +61,13 @@ def test_the_parameters_of_ours():
 
 
 def test_the_parameters_of_autoware():
-    """Each is documented; a covariance of 36 numbers is not spelled out."""
+    """Those that differ from Autoware's node are listed, all are counted."""
     rows = rows_below("ndt_autoware.md", "## Parameters")
-    documented = {name.strip("`"): default for name, default, *_ in rows}
-    expected = defaults(MatcherParameters)
-    assert set(documented) == set(expected)
-    for name, default in expected.items():
-        if len(default) < 60:
-            assert as_number(documented[name]) == as_number(default), name
+    documented = {name.strip("`"): as_number(default) for name, default, _ in rows}
+    expected = {name: as_number(value) for name, value in defaults(MatcherParameters).items()}
+    assert documented.items() <= expected.items()
+    page = (DESIGN / "ndt_autoware.md").read_text()
+    assert f"The node has {len(expected)} parameters of Autoware's" in page
 
 
 def test_the_parameters_of_the_map_loader():
@@ -85,12 +82,3 @@ def test_the_levels_of_the_library():
     found = re.search(r"levels \(`coarse_levels`\) \| (\(.*?\)) two|levels .*\| (\(2,\))", text)
     assert found is not None
     assert MatcherOptions().coarse_levels == (2.0,)
-
-
-def test_the_options_of_simulate():
-    rows = rows_below("../reference/cli/ndt.md", "Options of `simulate`")
-    documented = {row[0].strip("`"): as_number(row[1]) for row in rows}
-    options = [one for one in simulate.params if isinstance(one, click.Option)]
-    values = {one.opts[0]: False if one.is_flag else one.default for one in options}
-    expected = {name: as_number(written(value)) for name, value in values.items()}
-    assert documented == expected
