@@ -19,7 +19,7 @@ MIDDLEWARES = (with_malloc_tuning(INSIDE, "rmw_manycore"), FAST_DDS, TUNED_FAST_
 
 
 @dataclass(frozen=True)
-class Camera:
+class CameraSettings:
     """What the camera sends."""
 
     name: str
@@ -34,8 +34,8 @@ class Camera:
         return self.width, self.height, self.rate_hz
 
 
-SMALL = Camera("1 MiB at 15 Hz", 683, 512, 15, 3)
-LARGE = Camera("5 MP at 60 Hz", 2592, 1944, 60, 0)
+SMALL = CameraSettings("1 MiB at 15 Hz", 683, 512, 15, 3)
+LARGE = CameraSettings("5 MP at 60 Hz", 2592, 1944, 60, 0)
 CAMERAS = (SMALL, LARGE)
 
 
@@ -62,7 +62,7 @@ def compare(note: Callable[[str], None], images: int = IMAGES) -> Iterator[Detec
 
 
 def detections(
-    camera: Camera, middleware: Middleware, images: int, *, with_filter: bool = True
+    camera: CameraSettings, middleware: Middleware, images: int, *, with_filter: bool = True
 ) -> Detections:
     """Send images through the nodes, which may run on all CPUs."""
     cpus = sorted(os.sched_getaffinity(0))
@@ -82,7 +82,9 @@ def detections(
         return _read(camera, middleware, images, detector.finish())
 
 
-def _read(camera: Camera, middleware: Middleware, images: int, found: dict[str, Any]) -> Detections:
+def _read(
+    camera: CameraSettings, middleware: Middleware, images: int, found: dict[str, Any]
+) -> Detections:
     return Detections(
         camera.name, middleware.name, images, found["detections"], found["age_ms"], found["cpu_s"]
     )

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, on_cpu, usable
 from rmw_manycore_py.bench.ndt.python_peer import open3d_multi_scale_aligner
 from rmw_manycore_py.bench.ndt.trust_worlds import simulated
-from rmw_manycore_py.bench.ndt.world import World, world
+from rmw_manycore_py.bench.ndt.world import RecordedWorld, world
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
@@ -127,7 +127,7 @@ def recorded_drive(scans: int, first: int = 0, step: int = 2) -> Place:
     return place_of(world(scans, first, step))
 
 
-def place_of(recorded: World) -> Place:
+def place_of(recorded: RecordedWorld) -> Place:
     """Return map and scans of a recording."""
     return Place("", recorded.map_points, recorded.scans, list(recorded.poses))
 

@@ -39,13 +39,13 @@ TIMEOUT_S = 600.0  # timeout of one program; a drive takes 20 s
 
 
 @dataclass(frozen=True)
-class Drive:
+class SimulatedDrive:
     """Files written by `manycore ndt simulate`."""
 
     directory: Path
 
     @classmethod
-    def simulated(cls, directory: Path, *options: str) -> Drive:
+    def simulated(cls, directory: Path, *options: str) -> SimulatedDrive:
         """Simulate a drive."""
         _call("ndt", "simulate", str(directory), *options)
         return cls(directory)
@@ -76,7 +76,7 @@ class Scenario:
     voxel_m: float = 0.5
     killed_after: int = 0
 
-    def play(self, drive: Drive, directory: Path) -> list[dict[str, str]]:
+    def play(self, drive: SimulatedDrive, directory: Path) -> list[dict[str, str]]:
         """Return the rows of the replay's table."""
         cpus = sorted(os.sched_getaffinity(0))
         with busy(self.busy, cpus, TIMEOUT_S), self._running(directory) as pid_of_node:

@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from rmw_manycore_py.bench.ndt.driven import Drive, Scenario
+from rmw_manycore_py.bench.ndt.driven import Scenario, SimulatedDrive
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.process.scheduling import Scheduling, refusal
@@ -41,13 +41,13 @@ def measure(run: Run) -> list[Result]:
     with tempfile.TemporaryDirectory() as directory:
         here = Path(directory)
         run.note(f"{NAME}: making drives up")
-        drive = Drive.simulated(here / "drive", "--length", str(LENGTH_M * share))
+        drive = SimulatedDrive.simulated(here / "drive", "--length", str(LENGTH_M * share))
         tiles = drive.tiles(TILE_M) if SWAPPED in wanted else here
         scenarios = _scenarios(tiles)
         large = None
         if SIZED in wanted:
             length = ("--length", str(LARGE_LENGTH_M * share))
-            large = Drive.simulated(here / "large", *length, *LARGE)
+            large = SimulatedDrive.simulated(here / "large", *length, *LARGE)
         for name in wanted:
             run.note(f"{NAME}: {name}")
             played = large if name == SIZED and large is not None else drive

@@ -24,7 +24,7 @@ GUESS_OFFSET_M = (0.3, -0.3, 0.1)
 
 
 @dataclass(frozen=True)
-class World:
+class RecordedWorld:
     """A map of every second scan of a drive, and some of the others.
 
     :param map_points: (N, 3) [m, map frame].
@@ -55,7 +55,7 @@ def _write_points(write: object, points: NDArray[np.float32]) -> None:
 
 
 @cache
-def world(scans: int = SCANS, first: int = 0, step: int = 2) -> World:
+def world(scans: int = SCANS, first: int = 0, step: int = 2) -> RecordedWorld:
     """Return the recorded drive, or a simulated one if there is no recording.
 
     :param scans: maximum number of the odd scans, which are not part of the map.
@@ -64,7 +64,9 @@ def world(scans: int = SCANS, first: int = 0, step: int = 2) -> World:
     return world_of(*recorded(), scans, first, step)
 
 
-def world_of(recording: Recording, name: str, scans: int, first: int = 0, step: int = 2) -> World:
+def world_of(
+    recording: Recording, name: str, scans: int, first: int = 0, step: int = 2
+) -> RecordedWorld:
     """Return the world of a recording; parameters as for `world`."""
     last = (len(recording) - 1) // 2 * 2 - 1
     odd = np.unique(np.linspace(1, last, scans).astype(int) // 2 * 2 + 1)
@@ -72,7 +74,7 @@ def world_of(recording: Recording, name: str, scans: int, first: int = 0, step: 
     poses = recording.poses[odd]
     guesses = poses.copy()
     guesses[:, :3, 3] += GUESS_OFFSET_M
-    return World(
+    return RecordedWorld(
         name=name,
         map_points=recording.accumulated(range(first, len(recording), step)).astype(np.float32),
         scans=[np.ascontiguousarray(recording.scan(i)) for i in odd],

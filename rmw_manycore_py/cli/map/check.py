@@ -15,7 +15,7 @@ from rmw_manycore_py.cli.common.printing import counted, echo, print_json, print
 from rmw_manycore_py.cli.common.rates import load_rates
 from rmw_manycore_py.errors import EXIT_FAILURE, MapfileError
 from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
-from rmw_manycore_py.mapfile.placing.moves import Advice, RoomError
+from rmw_manycore_py.mapfile.placing.moves import Proposal, RoomError
 from rmw_manycore_py.mapfile.placing.room import Placed
 from rmw_manycore_py.mapfile.placing.show import cluster_row
 from rmw_manycore_py.mapping import facts_of
@@ -47,7 +47,7 @@ def command(mapfile: Path, trace: Path | None, as_json: bool) -> None:
     facts = facts_of(placement, load_rates(trace) if trace else None)
     missing = {node.full_name: node.missing for node in placement.nodes if node.missing}
     fit = fit_of(facts)
-    advice = None if fit == "fits" else Advice.of(Placed(checked, placement.nodes))
+    advice = None if fit == "fits" else Proposal.of(Placed(checked, placement.nodes))
     if as_json:
         print_json(
             {

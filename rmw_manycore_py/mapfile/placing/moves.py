@@ -23,13 +23,13 @@ _MAX_ROOMS = 5  # groups of clusters in words
 class RoomError(MapfileError):
     """Problems of a mapfile that places more in a cluster than it has room for."""
 
-    def __init__(self, problems: Sequence[Problem], advice: Advice) -> None:
+    def __init__(self, problems: Sequence[Problem], advice: Proposal) -> None:
         super().__init__(*problems, hints=advice.lines())
         self.advice = advice
 
 
 @dataclass(frozen=True)
-class Advice:
+class Proposal:
     """Where nodes of crowded clusters would fit.
 
     :param placed: what is placed.
@@ -42,13 +42,13 @@ class Advice:
     moves: Moves
 
     @classmethod
-    def of(cls, placed: Placed) -> Advice:
+    def of(cls, placed: Placed) -> Proposal:
         """Look for room."""
         room = [one for one in placed.room() if one.cores > 0 and one.size_bytes > 0]
         return cls(placed, room, moves_for(placed))
 
     def lines(self) -> Iterator[str]:
-        """Yield the advice in words."""
+        """Yield the moves in words."""
         rooms = listed([*_rooms_in_words(self.room)], _MAX_ROOMS)
         yield f"room is left in {rooms}" if rooms else "no cluster has room"
         if not self.moves:
@@ -65,7 +65,7 @@ class Advice:
         yield f"it fits if you move {'; '.join(parts)}{without}"
 
     def data(self) -> dict[str, Any]:
-        """Return the advice as JSON data."""
+        """Return the moves as JSON data."""
         return {"room": [vars(one) for one in self.room], "moves": dict(self.moves)}
 
 

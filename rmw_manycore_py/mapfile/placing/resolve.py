@@ -21,7 +21,7 @@ from rmw_manycore_py.mapfile.placing.foreign import foreign_starts
 from rmw_manycore_py.mapfile.placing.imports import check_imports
 from rmw_manycore_py.mapfile.placing.launched import launch_rules, read_launch
 from rmw_manycore_py.mapfile.placing.memory import memory_of_clusters
-from rmw_manycore_py.mapfile.placing.moves import Advice, RoomError
+from rmw_manycore_py.mapfile.placing.moves import Proposal, RoomError
 from rmw_manycore_py.mapfile.placing.notices import (
     elsewhere,
     of_launch,
@@ -108,7 +108,7 @@ def _placement(
     problems += [*import_problems, *ring_problems, *room_problems]
     problems += check_sessions(mapfile, topics)
     if room_problems:
-        raise RoomError(problems, Advice.of(placed))
+        raise RoomError(problems, Proposal.of(placed))
     if problems:
         raise MapfileError(*problems)
     return Placement(
