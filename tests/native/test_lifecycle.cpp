@@ -8,11 +8,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <thread>
 
 #include "messages.hpp"
 #include "node_role.hpp"
@@ -167,6 +169,27 @@ TEST_CASE("clean_platform removes a dead platform, and refuses to touch a live o
   kill_whole(platform, nodes, true);
   CHECK(clean_platform(platform.name()).size() >= 4);
   CHECK_FALSE(platform.exists());
+}
+
+TEST_CASE("a look at a platform that is being created waits until it is whole") {
+  const TestPlatform platform;
+  const PlatformPaths paths = platform.paths();
+  std::atomic<pid_t> looking{0};
+  std::string refused;
+  std::thread reader;
+  under_join_lock(paths, [&] {
+    REQUIRE(mkdir(paths.directory.c_str(), 0700) == 0);
+    reader = std::thread([&] {
+      looking = gettid();
+      refused = refusal_of([&] { look_at(paths); }).text;
+      looking = 0;
+    });
+    wait_until("it waits", [&] { return looking != 0 && is_asleep(looking); });
+    ensure_platform(paths, host_profile(), {});
+  });
+  reader.join();
+  CHECK(refused == "");
+  clean_platform(platform.name());
 }
 
 TEST_CASE("a configurator keeps a platform without nodes, also in its own process") {

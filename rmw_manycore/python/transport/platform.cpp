@@ -6,6 +6,7 @@
 #include <nanobind/stl/vector.h>
 #include <unistd.h>
 
+#include <memory>
 #include <optional>
 
 #include "platform/private_directory.hpp"
@@ -83,9 +84,11 @@ public:
 
 private:
   struct View {
-    explicit View(const std::string & name) : registry(PlatformPaths::of(name)), graph(registry) {}
+    explicit View(const std::string & name)
+    : opened(look_at(PlatformPaths::of(name))), registry(*opened), graph(registry) {}
 
-    Registry registry;
+    std::unique_ptr<Registry> opened;
+    Registry & registry;
     Graph graph;
   };
 
@@ -123,7 +126,8 @@ void bind_platform(nb::module_ & module) {
     "charge_smem", &charge, nb::arg("platform"), nb::arg("size_bytes"),
     nb::call_guard<nb::gil_scoped_release>());
   nb::class_<Platform> bound(module, "Platform");
-  bound.def(nb::init<const std::string &>(), nb::arg("name"))
+  bound
+    .def(nb::init<const std::string &>(), nb::arg("name"), nb::call_guard<nb::gil_scoped_release>())
     .def("info", &Platform::info)
     .def("processes", &Platform::processes)
     .def("clusters", &Platform::clusters)

@@ -7,6 +7,11 @@
 #include "platform/private_directory.hpp"
 
 namespace manycore {
+namespace {
+
+constexpr int look_timeout_ms = 2'000;
+
+}  // namespace
 
 Configurator::Configurator(
   const std::string & platform, const Profile & profile,
@@ -49,6 +54,19 @@ std::vector<std::string> platform_names() {
   names.erase(std::remove_if(names.begin(), names.end(), is_other), names.end());
   std::sort(names.begin(), names.end());
   return names;
+}
+
+std::unique_ptr<Registry> look_at(const PlatformPaths & paths) {
+  try {
+    auto registry = std::make_unique<Registry>(paths);
+    if (registry->lifelines().is_any_held()) {
+      return registry;
+    }
+  } catch (const Error &) {
+    // judged below
+  }
+  const auto lock = FileLock::acquire_existing(paths.join_lock(), look_timeout_ms);
+  return std::make_unique<Registry>(paths);
 }
 
 }  // namespace manycore

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,5 +30,10 @@ private:
 
 /// Names of this user's platforms, running or dead.
 std::vector<std::string> platform_names();
+
+/// Opens the registry of a platform to look at it. What appears damaged or dead is looked at again
+/// under the join lock: it may be just being created or removed. Throws what Registry() throws, and
+/// Error{timeout}.
+std::unique_ptr<Registry> look_at(const PlatformPaths & paths);
 
 }  // namespace manycore
