@@ -71,6 +71,20 @@ def unpublished(
             yield f"{place}: nodes.{name}.topic_to: no source publishes {topic}; {meant}"
 
 
+def starting_nothing(mapfile: Mapfile, starts: Mapping[str, NodeStart]) -> Iterator[str]:
+    """Yield nodes whose `module` or `script` only defines something, and ends at once."""
+    for name, section in mapfile.sections.nodes.items():
+        source = starts[name].source
+        started = section.module or section.script
+        if started and source is not None and not source.is_program:
+            key = "module" if section.module else "script"
+            place = f"{mapfile.path}:{mapfile.document.line(('nodes', name, key))}"
+            yield (
+                f"{place}: nodes.{name}.{key}: {started} starts nothing and ends at once; call "
+                "main() at its end, or name `package` and `executable` of its entry point"
+            )
+
+
 def refused_scheduling(nodes: Sequence[PlacedNode]) -> Iterator[str]:
     """Yield nodes whose scheduling policy this user may not set; `manycore run` rejects them."""
     for node in nodes:

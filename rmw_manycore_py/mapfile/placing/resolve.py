@@ -28,6 +28,7 @@ from rmw_manycore_py.mapfile.placing.notices import (
     overruled_prefixes,
     refused_scheduling,
     shared_cpus,
+    starting_nothing,
     unbound_memory,
     unpublished,
 )
@@ -128,6 +129,7 @@ def _placement(
             *(text for _, texts in rules.values() for text in texts),
             *import_notices,
             *unpublished(mapfile, starts, nodes),
+            *starting_nothing(mapfile, starts),
             *refused_scheduling(nodes),
             *overruled_prefixes(starts, nodes),
             *elsewhere(mapfile.platform_name, nodes),

@@ -25,7 +25,7 @@ LAUNCH = """\
 
 
 def _write(directory: Path, mapfile: str, types: str = "String") -> Path:
-    (directory / "one.py").write_text(node_source("one", types=types))
+    (directory / "one.py").write_text(node_source("one", types=types) + "main()\n")
     (directory / "pair.launch.xml").write_text(LAUNCH)
     file = directory / "mapfile.yaml"
     file.write_text(mapfile)

@@ -125,6 +125,17 @@ def crossing(write: Write, line: str, keys: str = "") -> tuple[str, ...]:
     return tuple(notice for notice in placement.notices if "topic_to" in notice)
 
 
+@pytest.mark.parametrize("last", ["", "if __name__ == '__main__':\n    main()\n"])
+def test_a_module_that_only_defines_something_is_named(
+    write: Write, tmp_path: Path, last: str
+) -> None:
+    (tmp_path / "node.py").write_text(f"def main():\n    pass\n\n\n{last}")
+    placement = check(write("nodes:\n  a: {cluster: 1, module: node}\n"))
+    found = [notice for notice in placement.notices if "node starts nothing" in notice]
+    assert len(found) == (0 if last else 1)
+    assert all("map.yaml:2: nodes.a.module" in notice for notice in found)
+
+
 def test_a_topic_that_no_source_publishes_is_named(write: Write, tmp_path: Path) -> None:
     (notice,) = crossing(write, "/chatters: TYPE")
     place = f"{tmp_path / 'map.yaml'}:6: nodes.a.topic_to"
