@@ -166,6 +166,23 @@ def test_what_the_table_of_features_calls_tested_exists() -> None:
     assert [path for path in paths if not list(ROOT.glob(path))] == []
 
 
+def test_the_tables_of_folders_name_every_room_and_only_those() -> None:
+    contributing = (ROOT / "CONTRIBUTING.md").read_text()
+    architecture = (ROOT / "docs/explanation/architecture.md").read_text()
+    lines = [line.split("   ")[0] for line in architecture.splitlines()]
+    listed = {room for row in ROW.findall(contributing) for room in rooms_in(row)}
+    drawn = {room for line in lines for room in rooms_in(line.replace(", ", ",").strip())}
+    existing = {path.parent.name for path in ROOT.glob("rmw_manycore_py/*/__init__.py")}
+    assert listed == existing
+    assert "mapfile" in drawn < existing
+
+
+def rooms_in(text: str) -> set[str]:
+    """Return the rooms in `rmw_manycore_py/room`, `.../{room,room}` and `.../room,room`."""
+    found = re.findall(r"rmw_manycore_py/\{?([a-z0-9,_]+)", text)
+    return {room for names in found for room in names.split(",")} - {"__init__"}
+
+
 def test_every_variable_of_the_environment_is_in_one_place() -> None:
     folders = ("rmw_manycore", "rmw_manycore_py", "bridge", "startup", "scripts", "tests")
     files = [f for folder in folders for f in (ROOT / folder).rglob("*") if f.suffix in SUFFIXES]
