@@ -52,7 +52,7 @@ class Proposal:
         rooms = listed([*_rooms_in_words(self.room)], _MAX_ROOMS)
         yield f"room is left in {rooms}" if rooms else "no cluster has room"
         if not self.moves:
-            yield "no way to move nodes was found: lower topic_dsm_size, or take a larger platform"
+            yield f"no way to move nodes was found: {self._instead()}, or take a larger platform"
             return
         sections = self.placed.mapfile.sections.nodes
         by_cluster: dict[int, list[str]] = defaultdict(list)
@@ -63,6 +63,11 @@ class Proposal:
         with_core = sum(sections[name].core is not None for name in self.moves)
         without = ("", ", without its core")[with_core] if with_core < 2 else ", without their core"
         yield f"it fits if you move {'; '.join(parts)}{without}"
+
+    def _instead(self) -> str:
+        if any(one.cores < 0 for one in self.placed.room()):
+            return "let nodes share a core (core, allow_shared_cores)"
+        return "lower topic_dsm_size"
 
     def data(self) -> dict[str, Any]:
         """Return the moves as JSON data."""

@@ -107,6 +107,14 @@ def test_where_nothing_fits_other_cures_are_named(tmp_path: Path) -> None:
     ]
 
 
+def test_where_no_core_is_left_nodes_may_share_one(tmp_path: Path) -> None:
+    data = mapfile({f"n{i}": node(1 + i % 5) for i in range(80)})
+    assert str(refused(tmp_path, data)).splitlines()[-1] == (
+        "no way to move nodes was found: let nodes share a core (core, allow_shared_cores), "
+        "or take a larger platform"
+    )
+
+
 def test_a_mapfile_that_follows_the_advice_is_valid(tmp_path: Path) -> None:
     """Also with transferred topics, whose landings move with publishers and subscribers."""
     followed = 0
