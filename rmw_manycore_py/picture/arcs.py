@@ -49,13 +49,7 @@ class Arc:
     @cached_property
     def name(self) -> str:
         """First line of its label."""
-        return shown_name(self.wire)
-
-
-def shown_name(wire: Wire) -> str:
-    """Return the name of the first topic, and how many are folded with it."""
-    more = len(wire.topics) - 1
-    return f"{wire.topics[0]} +{more}" if more else wire.topics[0]
+        return self.wire.name
 
 
 class Wiring:
@@ -207,7 +201,7 @@ class Wiring:
 
 def label_width(wire: Wire) -> float:
     """Return the width that a label needs."""
-    return max(width_of(shown_name(wire), BOLD), width_of("0" * LOAD_LENGTH, SMALL))
+    return max(width_of(wire.name, BOLD), width_of("0" * LOAD_LENGTH, SMALL))
 
 
 def _ports_of(wire: int, route: Route) -> tuple[_Port, _Port]:

@@ -89,7 +89,7 @@ class PageState:
 
 def _arc_row(arc: Arc) -> Row:
     lines = [[round(value, 1) for point in line for value in point] for line in arc.lines]
-    return {"lines": lines, "topics": arc.wire.topics, "nodes": arc.wire.nodes}
+    return {"lines": lines, "topics": arc.wire.nodes_of}
 
 
 def _trace_row(look: Look) -> Row | None:

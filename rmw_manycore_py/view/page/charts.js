@@ -5,13 +5,15 @@ import uPlot from "./uplot/uPlot.esm.js";
 
 const LENGTH = 600;
 const COMPACT = new Intl.NumberFormat("en", { notation: "compact" });
-const COLOURS = ["#2463c7", "#b35c00", "#4f8f5b", "#8e44ad", "#c62828", "#00838f"];
+// Each of a contrast of 3 on both panels.
+const COLOURS = ["#3b7dd8", "#b35c00", "#4f8f5b", "#a95fca", "#d9433b", "#00838f"];
 
 export class Charts {
-  // groups: [title, which series belong to it]
-  constructor(place, groups) {
+  // groups: [title, which series belong to it]; fromZero: whether the curves show where zero is
+  constructor(place, groups, fromZero = true) {
     this.place = place;
     this.groups = groups;
+    this.fromZero = fromZero;
     this.forget();
   }
 
@@ -73,7 +75,7 @@ export class Charts {
   plot(title, names) {
     const figure = document.createElement("figure");
     const caption = document.createElement("figcaption");
-    caption.textContent = title;
+    caption.textContent = title || names.join(", ");
     const latest = document.createElement("output");
     latest.setAttribute("aria-live", "off");
     latest.textContent = this.latest(names);
@@ -92,7 +94,7 @@ export class Charts {
       legend: { show: names.length > 1, live: false },
       cursor: { y: false },
       axes: [{ ...axis, size: 24, values: undefined }, axis],
-      scales: { y: { range: (_, low, high) => [Math.min(low ?? 0, 0), Math.max(high ?? 1, 1)] } },
+      scales: { y: this.fromZero ? { range: withZero } : {} },
       series: [{}, ...names.map((label, index) => (
         { label, stroke: COLOURS[index % COLOURS.length], width: 1.5, points: { show: false } }
       ))],
@@ -101,4 +103,8 @@ export class Charts {
     plot.root.setAttribute("aria-hidden", "true"); // curves and legend; the values are in `latest`
     return [plot, names, latest];
   }
+}
+
+function withZero(_, low, high) {
+  return [Math.min(low ?? 0, 0), Math.max(high ?? 1, 1)];
 }

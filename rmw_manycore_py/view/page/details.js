@@ -11,12 +11,14 @@ const WORDS = { deadlines_missed: "deadlines missed" };
 
 export class Details {
   // onLost: called with what was shown, when the element that had opened it is gone.
-  constructor(onClose, onLost) {
+  constructor(onSelect, onLost) {
+    this.onSelect = onSelect;
     this.onLost = onLost;
     this.opener = null;
     this.section = document.getElementById("details");
     this.title = document.getElementById("details-title");
     this.facts = document.getElementById("details-facts");
+    this.together = document.getElementById("together");
     this.endpoints = document.getElementById("endpoints");
     this.parameters = document.getElementById("details-parameters");
     this.parametersText = document.getElementById("parameters-text");
@@ -26,12 +28,14 @@ export class Details {
     );
     this.control = new Control();
     this.samples = new Samples();
+    this.allCharts = [this.charts, this.samples.charts];
     this.choice = null;
-    document.getElementById("details-close").addEventListener("click", onClose);
+    document.getElementById("details-close").addEventListener("click", () => onSelect(null));
     document.getElementById("parameters").addEventListener("click", () => this.ask());
   }
 
-  open(choice) {
+  // together: the topics that are drawn as one line with the chosen one
+  open(choice, together) {
     const focused = document.activeElement;
     const wasInside = this.section.contains(focused);
     const previous = this.choice;
@@ -40,6 +44,8 @@ export class Details {
     this.charts.forget();
     this.control.open(choice?.node ?? null);
     this.samples.open(choice?.topic ?? null);
+    this.together.hidden = together.length === 0;
+    this.together.replaceChildren("In the same line: ", ...together.map((name) => this.link(name)));
     if (choice === null) {
       if (wasInside) {
         this.giveBack(previous);
@@ -54,6 +60,13 @@ export class Details {
     this.parameters.hidden = kind !== "node";
     this.parametersText.textContent = "";
     this.title.focus({ preventScroll: true });
+  }
+
+  link(topic) {
+    const found = text("button", topic);
+    found.type = "button";
+    found.addEventListener("click", () => this.onSelect({ topic }));
+    return found;
   }
 
   // The keyboard goes on where it was before.

@@ -16,7 +16,7 @@ const totals = document.getElementById("totals");
 const flow = new Flow(document.getElementById("flow"), document.getElementById("moving"));
 const picture = new Picture(document.getElementById("picture"), select);
 const finder = new Finder(select);
-const details = new Details(() => select(null), (choice) => finder.focus(choice));
+const details = new Details(select, (choice) => finder.focus(choice));
 const trace = new Trace(document.getElementById("trace"));
 const charts = new Charts(document.getElementById("charts"), [
   ["messages per second", (name) => name === "messages/s"],
@@ -34,7 +34,7 @@ function select(choice) {
   }
   selected = choice;
   flow.limit(picture.select(choice));
-  details.open(choice);
+  details.open(choice, picture.together(choice?.topic));
   if (live !== null && live.readyState === WebSocket.OPEN) {
     live.send(JSON.stringify({ select: choice }));
   }
@@ -112,7 +112,7 @@ function connect() {
   };
 }
 
-setUpTheme(document.getElementById("theme"), () => charts.redraw());
+setUpTheme(document.getElementById("theme"), () => [charts, ...details.allCharts].forEach((one) => one.redraw()));
 document.addEventListener("keydown", (event) => {
   if (event.key === "Escape") {
     select(null);

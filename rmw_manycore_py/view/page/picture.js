@@ -17,7 +17,7 @@ export class Picture {
     });
   }
 
-  // arcs: {id: {lines, topics, nodes}}
+  // arcs: {id: {lines, topics: {name: nodes}}}
   replace(text, arcs) {
     const focused = document.activeElement?.id;
     const parsed = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
@@ -50,6 +50,12 @@ export class Picture {
     this.marked.forEach(([element, name]) => element.classList.add(name));
   }
 
+  // The topics that are drawn as one line with this one.
+  together(topic) {
+    const arc = Object.values(this.arcs).find((one) => Object.hasOwn(one.topics, topic));
+    return Object.keys(arc?.topics ?? {}).filter((name) => name !== topic);
+  }
+
   // What is joined to the choice stays, the rest steps back. Returns the ids of the arcs that stay;
   // null for all.
   select(choice) {
@@ -59,8 +65,10 @@ export class Picture {
       return null;
     }
     const [[kind, name]] = Object.entries(choice);
-    const joined = Object.entries(this.arcs).filter(([, arc]) => arc[`${kind}s`]?.includes(name));
-    const nodes = new Set(joined.flatMap(([, arc]) => arc.nodes));
+    const isMeant = ([topic, nodes]) => (kind === "topic" ? topic === name : nodes.includes(name));
+    const meant = Object.entries(this.arcs).map(([id, arc]) => [id, Object.entries(arc.topics).filter(isMeant)]);
+    const joined = meant.filter(([, topics]) => topics.length > 0);
+    const nodes = new Set(joined.flatMap(([, topics]) => topics.flatMap(([, own]) => own)));
     if (kind === "node") {
       nodes.add(name);
     }

@@ -13,7 +13,7 @@ export class Samples {
     this.canvas = document.getElementById("samples-image");
     this.picture = document.getElementById("samples-picture");
     this.fields = document.getElementById("samples-fields");
-    this.charts = new Charts(document.getElementById("samples-plot"), [["", () => true]]);
+    this.charts = new Charts(document.getElementById("samples-plot"), [["", () => true]], false);
     this.topic = null;
     this.socket = null;
     this.plotted = null; // path of a number
@@ -95,6 +95,7 @@ export class Samples {
     if (typeof value === "number") {
       name.type = "button";
       name.setAttribute("aria-label", `plot ${path}`);
+      name.setAttribute("aria-pressed", String(path === this.plotted));
       name.addEventListener("click", () => this.plot(path));
     }
     found.append(name, " ", document.createElement("output"));
@@ -102,9 +103,13 @@ export class Samples {
     return found;
   }
 
+  // Of a number that is plotted already: ends that.
   plot(path) {
-    this.plotted = path;
+    this.plotted = path === this.plotted ? null : path;
     this.charts.forget();
+    for (const button of this.fields.querySelectorAll("button")) {
+      button.setAttribute("aria-pressed", String(button.textContent === this.plotted));
+    }
   }
 
   showImage(image) {

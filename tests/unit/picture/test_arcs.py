@@ -14,6 +14,7 @@ from rmw_manycore_py.picture.layout import Layout, lay_out
 from rmw_manycore_py.picture.marks import label_text
 from rmw_manycore_py.picture.texts import BOLD, SMALL, fitted, width_of
 from rmw_manycore_py.picture.wires import MAX_PAIRS
+from rmw_manycore_py.platform.monitor.graph import Graph
 from rmw_manycore_py.platform.monitor.latency import TopicLatency
 from rmw_manycore_py.platform.monitor.loads import TopicLoad
 from support.samples.mappings import apart, graph, inside, mapping, member
@@ -117,13 +118,39 @@ def test_topics_between_the_same_cells_are_one_line() -> None:
     assert [arc.name for arc in arcs] == ["/t0 +1", "/t1 +1"]
 
 
+def pipelines(count: int, clusters: int = 1) -> Graph:
+    """Return pipelines of a camera and a filter; each in a cluster of its own, if there are."""
+    names = [name for n in range(count) for name in (f"/arm2/cam{n}", f"/arm2/filter{n}")]
+    members = [member(n, n // 2 % clusters + 1, n, name) for n, name in enumerate(names)]
+    ends = [
+        (kind, f"/arm2/cam{n // 2}/{topic}", n)
+        for n in range(2 * count)
+        for topic in ("image", "info")
+        for kind in (("subscription",) if n % 2 else ("publisher",))
+    ]
+    return graph(members, ends)
+
+
+def test_parallel_pipelines_are_one_line_of_all_their_pairs() -> None:
+    (arc,) = lay_out(pipelines(4), []).arcs
+    assert arc.name == "4 x /arm2/cam*/image +1"
+    assert len(arc.wire.topics) == 8
+    assert arc.wire.nodes_of["/arm2/cam3/info"] == ("/arm2/cam3", "/arm2/filter3")
+    assert sorted(arc.wire.pairs) == [(f"c1-{n}", f"c1-{n + 1}") for n in (0, 2, 4, 6)]
+
+
+def test_few_pipelines_and_those_of_other_clusters_stay_apart() -> None:
+    assert len(lay_out(pipelines(2), []).arcs) == 2
+    assert len(lay_out(pipelines(4, clusters=4), []).arcs) == 4
+
+
 def test_lines_go_from_publishers_to_subscriptions_of_drawn_topics() -> None:
     ends = [("publisher", "/t", 0), ("subscription", "/t", 1)]
     ends += [("publisher", "/rosout", 0), ("subscription", "/rosout", 1)]
     ends += [("publisher", "/unheard", 0)]
     layout = lay_out(graph(FEW, ends), [])
     (arc,) = layout.arcs
-    assert (arc.wire.topics, arc.wire.nodes) == (("/t",), ("/a", "/talker"))
+    assert arc.wire.nodes_of == {"/t": ("/a", "/talker")}
     assert arc.wire.pairs == (("c1-1", "c2-1"),)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import colorsys
 import re
+from importlib.resources import files
 
 import pytest
 
@@ -64,6 +65,17 @@ def test_lines_stand_out_and_texts_are_readable(theme: dict[str, str]) -> None:
     for level in range(1, CPU_LEVELS + 1):
         cell = cpu_colour(level, colour(theme["cluster"]))
         assert contrast(colour(theme["ink"]), cell) >= 4.5, level
+
+
+def test_curves_of_the_page_stand_out_on_both_panels() -> None:
+    page = files("rmw_manycore_py.view") / "page"
+    curves = re.search(r"COLOURS = \[([^]]*)\]", (page / "charts.js").read_text())
+    assert curves
+    panels = set(re.findall(r"--panel: #(\w{6})", (page / "page.css").read_text()))
+    assert len(panels) == 2
+    for panel in panels:
+        for curve in re.findall(r"#(\w{6})", curves[1]):
+            assert contrast(colour(curve), colour(panel)) >= 3, curve
 
 
 def test_each_colour_is_also_there_without_variables() -> None:
