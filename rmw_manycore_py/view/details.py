@@ -25,6 +25,8 @@ from rmw_manycore_py.platform.monitor.sample import (
 from rmw_manycore_py.platform.monitor.watch import Look
 
 Row = dict[str, Any]
+# Of /rosout, parameters and type descriptions.
+_EVERY_NODES_TYPES = ("rcl_interfaces/", "type_description_interfaces/")
 
 
 def node_details(look: Look, name: str) -> Row | None:
@@ -65,10 +67,14 @@ def _node(look: Look, name: str, member: Member, is_dead: bool) -> Row:
         "cpu": percent_text(look.loads.cpu_share(member.pid)),
         "shared_with": [other for other in member.nodes if other != name],
         "workers": len(look.workers.get(member.pid, ())),
-        "endpoints": []
-        if is_dead
-        else _endpoints(look, lambda e: e.node == name and e.process == member.slot),
+        "endpoints": [] if is_dead else _own_first(look, name, member.slot),
     }
+
+
+def _own_first(look: Look, node: str, process: int) -> list[Row]:
+    """Return the endpoints of a node; what every node has, after its own."""
+    rows = _endpoints(look, lambda e: e.node == node and e.process == process)
+    return sorted(rows, key=lambda row: row["type"].startswith(_EVERY_NODES_TYPES))
 
 
 def _endpoints(look: Look, is_wanted: Callable[[Endpoint], bool]) -> list[Row]:

@@ -56,6 +56,7 @@ def test_a_platform_is_seen_from_start_to_end(view, browser, start, platform) ->
 
     browser.click("[data-node='/talker']")
     browser.wait_for_text("#details-facts", f"pid {talker.pid}")
+    browser.until(lambda: browser.text("#endpoints b") == "/chatter", "its own topic is first")
     browser.wait_for_text("#endpoints", "reliable, volatile, keep last 10")
     browser.click("#parameters")
     browser.wait_for_text("#parameters-text", "rate_hz")
@@ -91,6 +92,23 @@ def test_messages_of_a_topic_are_shown(talking, view, browser) -> None:
     browser.wait_for_text("#samples-fields [data-path='data']", "Hello World")
     browser.click("#samples")
     browser.wait_for_text("#samples", "Show messages")
+    assert browser.complaints() == []
+
+
+def test_a_number_is_plotted_while_its_field_is_chosen(talking, view, browser) -> None:
+    browser.open(view[1])
+    browser.find("[data-node='/talker']")
+    browser.driver.execute_script(
+        "document.evaluate(\"//button[.='topic /rosout']\", document).iterateNext().click()"
+    )
+    browser.click("#samples")
+    number = "#samples-fields [data-path='stamp.sec'] button"
+    browser.click(number)
+    browser.wait_for_text("#samples-plot figcaption", "stamp.sec")
+    browser.find("#samples-plot canvas")
+    browser.find(f"{number}[aria-pressed='true']")
+    browser.click(number)
+    browser.until(lambda: not browser.all("#samples-plot canvas"), "the plot is gone")
     assert browser.complaints() == []
 
 

@@ -32,4 +32,8 @@ class Seconds(FiniteRange):
         parts = _PART.findall(value) if isinstance(value, str) else []
         if parts and "".join(map("".join, parts)) == value:
             value = sum(float(number) * _UNIT_S[unit] for number, unit in parts)
-        return super().convert(value, param, context)
+        try:
+            seconds = float(value)
+        except ValueError:
+            self.fail(f"expected seconds, or units as in 90s, 5m, 1h30m; found {value!r}")
+        return super().convert(seconds, param, context)

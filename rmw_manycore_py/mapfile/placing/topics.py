@@ -55,15 +55,20 @@ def _settings(section: TopicSection) -> dict[str, Any]:
 def check_types(mapfile: Mapfile, topics: Iterable[TopicEntry]) -> Iterator[Problem]:
     """Yield types that are not installed, and nodes that disagree with the topic table."""
     sections = mapfile.sections
+    named: set[str] = set()  # whose nodes need not be named as well
     for name, topic in sections.topics.items():
         if topic.type is not None:
-            yield from _check_installed(mapfile, ("topics", name, "type"), topic.type)
+            problems = list(_check_installed(mapfile, ("topics", name, "type"), topic.type))
+            named.update(expand(name, "/") for _ in problems)
+            yield from problems
     for node, section in sections.nodes.items():
         for key in ("publish", "subscribe", *CROSSINGS):
             for name, type_name in getattr(section, key).items():
                 if type_name is not None:  # a pattern has none
                     yield from _check_installed(mapfile, ("nodes", node, key, name), type_name)
     for entry in topics:
+        if entry.name in named:
+            continue
         used = [(node, node.publish[entry.name]) for node in entry.publishers]
         used += [(node, node.subscribe[entry.name]) for node in entry.subscribers]
         for node_placed, type_name in used:

@@ -105,9 +105,12 @@ class Loads:
 
     @cached_property
     def fullest(self) -> tuple[Counts, Counts]:
-        """Entries and capacity of each topic's fullest queue."""
+        """Entries and capacity of each topic's fullest queue.
+
+        A queue for one message is full whenever there is one, so it shows nothing.
+        """
         counts = self.after.counts
-        rows = np.flatnonzero(~self.graph.is_publisher & (counts[:, CAPACITY] > 0))
+        rows = np.flatnonzero(~self.graph.is_publisher & (counts[:, CAPACITY] > 1))
         fill = counts[rows, QUEUED] / counts[rows, CAPACITY]
         rows = rows[np.argsort(fill, kind="stable")]  # the last of several assignments takes effect
         topics = self.graph.topic_index[rows]

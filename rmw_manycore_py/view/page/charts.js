@@ -14,6 +14,7 @@ export class Charts {
     this.place = place;
     this.groups = groups;
     this.fromZero = fromZero;
+    new ResizeObserver(() => this.plots.forEach(([plot]) => plot.setSize(this.size()))).observe(place);
     this.forget();
   }
 
@@ -60,6 +61,10 @@ export class Charts {
     return [this.times, ...names.map((name) => this.series.get(name))];
   }
 
+  size() {
+    return { width: Math.max(this.place.clientWidth, 240), height: 110 };
+  }
+
   redraw() {
     this.plots.forEach(([plot]) => plot.destroy());
     this.place.replaceChildren();
@@ -89,8 +94,7 @@ export class Charts {
       values: (_, values) => values.map((value) => COMPACT.format(value)),
     };
     const options = {
-      width: Math.max(this.place.clientWidth, 240),
-      height: 110,
+      ...this.size(),
       legend: { show: names.length > 1, live: false },
       cursor: { y: false },
       axes: [{ ...axis, size: 24, values: undefined }, axis],

@@ -26,3 +26,8 @@ def test_units_are_added_up(text: str, seconds: float) -> None:
 def test_anything_else_is_a_usage_error(text: str) -> None:
     with pytest.raises(click.BadParameter):
         Seconds().convert(text, None, None)
+
+
+def test_an_unknown_unit_is_answered_with_those_that_are_known() -> None:
+    with pytest.raises(click.BadParameter, match=r"as in 90s, 5m, 1h30m; found '5x'"):
+        Seconds().convert("5x", None, None)

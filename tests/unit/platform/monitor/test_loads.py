@@ -63,6 +63,13 @@ def test_rates_are_differences() -> None:
     assert (load.lost, load.losses_per_s, load.superseded) == (4, 1.5, 6)
 
 
+def test_a_queue_for_the_newest_message_is_never_full() -> None:
+    after = sample(2.0, [(A, [9, 9]), (C, [9, 9, *[0] * 7, 1, 1])], {})
+    one = Loads(sample(1.0, [(A, [1, 1])], {}), after)
+    (load,) = one.topics.values()
+    assert (load.queued, load.capacity, load.fill) == (0, 0, 0.0)
+
+
 LARGE = 1 << 20
 
 
