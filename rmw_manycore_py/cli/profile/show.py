@@ -81,5 +81,5 @@ def _ms(profile: Profile, times_ns: Distribution | None, share: float | None) ->
     if times_ns is None:
         return ""
     if share is None:
-        return f"{times_ns.mean / 1e6:.3f}"
-    return f"{times_ns.quantiles[profile.quantile_shares.index(share)] / 1e6:.3f}"
+        return f"{times_ns.mean / 1e6:.3f} ms"
+    return f"{times_ns.quantiles[profile.quantile_shares.index(share)] / 1e6:.3f} ms"
