@@ -115,7 +115,7 @@ class _Session:
     def _take_signals(self) -> None:
         for number in self._inbox.take():
             if number == signal.SIGWINCH:
-                self._client.say(_size())
+                self._client.send(_size())
             else:
                 self._reason = f"left running ({number.name})"
 
@@ -126,7 +126,7 @@ class _Session:
             return
         typed, is_detached = self._keys.take(data)
         if typed:
-            self._client.say({"input": base64.b64encode(typed).decode()})
+            self._client.send({"input": base64.b64encode(typed).decode()})
         if is_detached:
             self._reason = "left running"
 

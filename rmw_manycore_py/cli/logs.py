@@ -72,7 +72,7 @@ def command(
         printer.show(in_order(logs, tail))
         _follow(clients, logs, printer)
     for run in living:
-        _say_end(run)
+        _report_end(run)
 
 
 class _Printer:
@@ -107,5 +107,5 @@ def _follow(clients: list[Client], logs: Sequence[NodeLog], printer: _Printer) -
         printer.show(in_order(logs))
 
 
-def _say_end(run: RunDirectory) -> None:
+def _report_end(run: RunDirectory) -> None:
     click.secho(f"the run of platform {run.platform} has ended", fg="yellow", err=True)

@@ -54,7 +54,7 @@ def command(
     status = run_in_background(run, printer.report)
     if status == 0:
         option = "" if placement.name == default_platform() else f" --platform {placement.name}"
-        printer.say(f"in the background: manycore logs -f{option}; manycore stop{option}")
+        printer.print_line(f"in the background: manycore logs -f{option}; manycore stop{option}")
     sys.exit(status)
 
 

@@ -156,11 +156,11 @@ def _accompany(launch: ForeignLaunch, context: LaunchContext) -> None:
     for is_warning, text in launch.describe():
         (_logger().warning if is_warning else _logger().info)(text)
 
-    def say_what_is_left(_event: Any, _context: LaunchContext) -> None:
+    def report_unstarted(_event: Any, _context: LaunchContext) -> None:
         if names := ", ".join(launch.not_started):
             _logger().warning(f"in the mapfile, but not started by the launch file: {names}")
 
-    context.register_event_handler(OnShutdown(on_shutdown=say_what_is_left))
+    context.register_event_handler(OnShutdown(on_shutdown=report_unstarted))
     processes = [
         ExecuteProcess(
             cmd=[*_pinned(program.host_cpus), *program.command],

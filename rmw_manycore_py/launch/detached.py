@@ -77,7 +77,7 @@ def _be_supervisor(run: Run, writer: int) -> None:
         except Exception as error:
             known = reported(error) or ManycoreError(f"{type(error).__name__}: {error}")
             status = known.exit_status
-            progress.say({_ERROR: str(known), "exit_status": status})
+            progress.send({_ERROR: str(known), "exit_status": status})
     finally:
         os._exit(status)
 
@@ -99,16 +99,16 @@ class _Progress:
     def report(self, event: Event) -> None:
         """Send an event, except node output."""
         if not isinstance(event, Output):
-            self.say(event.as_data())
+            self.send(event.as_data())
 
     def come_up(self) -> None:
         """Send that the run is up, and stop sending."""
-        self.say({"event": "up"})
+        self.send({"event": "up"})
         if self._descriptor >= 0:
             os.close(self._descriptor)
             self._descriptor = -1
 
-    def say(self, data: object) -> None:
+    def send(self, data: object) -> None:
         """Send a message; the run continues if the reader has gone."""
         with suppress(OSError):
             if self._descriptor >= 0:

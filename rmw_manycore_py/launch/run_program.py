@@ -28,20 +28,20 @@ def main() -> int:
         loaded = load_mapfile(mapfile)
         run = Run(resolve(loaded, to_start=False), Mode(loaded))
         threading.Thread(target=_stop_after_parent, daemon=True).start()
-        return run.run(lambda event: _tell(event.as_data()), all_started=_come_up)
+        return run.run(lambda event: _report(event.as_data()), all_started=_come_up)
     except Exception as error:
         known = reported(error)
         if known is None:
             raise
-        _tell({"error": str(known), "exit_status": known.exit_status})
+        _report({"error": str(known), "exit_status": known.exit_status})
         return known.exit_status
 
 
 def _come_up() -> None:
-    _tell({"event": "up"})
+    _report({"event": "up"})
 
 
-def _tell(data: dict[str, Any]) -> None:
+def _report(data: dict[str, Any]) -> None:
     print(json.dumps(data), flush=True)
 
 

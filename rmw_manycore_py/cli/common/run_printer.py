@@ -68,7 +68,7 @@ class RunPrinter:
         elif isinstance(event, Finished):
             self._finished()
         elif (text := text_of(event)) is not None:
-            self.say(text, fg="yellow" if isinstance(event, _WARNINGS) else None)
+            self.print_line(text, fg="yellow" if isinstance(event, _WARNINGS) else None)
 
     def _prefix(self, name: str) -> str:
         if name not in self._prefixes:
@@ -78,7 +78,7 @@ class RunPrinter:
     def _new_prefix(self, name: str) -> str:
         return click.style(f"{name:<{self._width}} | ", fg=next(self._colours))
 
-    def say(self, text: str, fg: str | None = None) -> None:
+    def print_line(self, text: str, fg: str | None = None) -> None:
         """Print a line of the run itself, without a node name."""
         click.secho(f"{SUPERVISOR:<{self._width}} | {printable(text)}", fg=fg, bold=fg is None)
 
@@ -86,7 +86,7 @@ class RunPrinter:
         failed = event.state == "failed"
         if failed:
             self._failures.append(event)
-        self.say(text_of(event) or "", fg="red" if failed else None)
+        self.print_line(text_of(event) or "", fg="red" if failed else None)
 
     def _finished(self) -> None:
         """Repeat which nodes failed and why: the reason may have scrolled away."""

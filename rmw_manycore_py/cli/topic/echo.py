@@ -105,7 +105,7 @@ def command(
             topic,
             type_name,
             heard,
-            lost=None if silent or style == "json" else _tell_lost,
+            lost=None if silent or style == "json" else _report_lost,
             raw=style == "raw",
             qos=qos,
         )
@@ -128,7 +128,7 @@ def _text(part: Any, info: dict[str, Any] | None, style: str | None, shown: Show
     return f"{head}{to_yaml(part, shown, flow_style=style == 'flow')}---"
 
 
-def _tell_lost(status: Any) -> None:
+def _report_lost(status: Any) -> None:
     echo(
         f"A message was lost!!!\n\ttotal count change:{status.total_count_change}"
         f"\n\ttotal count: {status.total_count}---"

@@ -85,7 +85,7 @@ def _run(player: Player, position: Position, settings: Settings, line: StatusLin
         try:
             if typing is not None:
                 selector.register(typing, selectors.EVENT_READ, "keys")
-                line.say(HELP)
+                line.print_line(HELP)
             player.start(ended.ring)
             while True:
                 events = [key.data for key, _ in selector.select(line.period_s)]

@@ -44,8 +44,8 @@ def record(platform: str | None, settings: Settings, *, as_json: bool) -> None:
         settings.target.prepare(force=settings.force)
         output = Output(settings.target.file, settings.compression)
         writing = WritingThread(output, settings.cache_bytes, ended.ring)
-        recorder = Recorder(side, settings.selection, writing, settings.depth, line.say)
-        line.say(f"writing {settings.target.file}; Ctrl-C stops")
+        recorder = Recorder(side, settings.selection, writing, settings.depth, line.print_line)
+        line.print_line(f"writing {settings.target.file}; Ctrl-C stops")
         try:
             recorder.start(ended.ring)
             with selectors.DefaultSelector() as selector:

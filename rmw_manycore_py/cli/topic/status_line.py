@@ -34,7 +34,7 @@ class StatusLine:
         self._said_s = now_s
         self._write(f"{_CLEAR}{text}" if self._is_terminal else f"{text}\n")
 
-    def say(self, text: str) -> None:
+    def print_line(self, text: str) -> None:
         """Print a permanent line."""
         if not self._quiet:
             self._write(f"{_CLEAR}{text}\n" if self._is_terminal else f"{text}\n")

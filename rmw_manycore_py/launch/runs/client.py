@@ -37,7 +37,7 @@ class Client:
         self.socket = _connected(run)
         self._messages: list[Message] = []
         try:
-            self.say({"do": do, **arguments})
+            self.send({"do": do, **arguments})
             first = self._next()
         except BaseException:
             self.close()
@@ -61,7 +61,7 @@ class Client:
         """Close the connection."""
         self.socket.close()
 
-    def say(self, message: Message) -> None:
+    def send(self, message: Message) -> None:
         """Send a message; it is lost if the supervisor has gone."""
         try:
             self.socket.sendall(encoded(message))

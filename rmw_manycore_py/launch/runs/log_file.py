@@ -49,7 +49,7 @@ class LogFile:
     def write(self, text: str) -> str | None:
         """Append a line; return the reason if it is the first one that cannot be written."""
         try:
-            self._append(self._told() + _stamped(text))
+            self._append(self._gap() + _stamped(text))
         except OSError as error:
             self._unwritten += 1
             is_first, self._reason = not self._reason, error.strerror or str(error)
@@ -60,11 +60,11 @@ class LogFile:
     def close(self) -> None:
         """Close the file, after recording the number of lines lost at its end."""
         with suppress(OSError):
-            if told := self._told():
-                self._append(told)
+            if gap := self._gap():
+                self._append(gap)
         self._close()
 
-    def _told(self) -> bytes:
+    def _gap(self) -> bytes:
         """Return what has to precede the next line."""
         end = b"\n" if self._is_torn else b""
         if not self._unwritten:

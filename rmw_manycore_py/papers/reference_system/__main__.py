@@ -39,7 +39,7 @@ def main() -> int:
             if rclpy.ok():
                 raise
         finally:
-            kind.say_losses()
+            kind.report_losses()
     return 0
 
 

@@ -30,10 +30,10 @@ class Kind:
         self._settings = settings
         self.inputs: list[Input] = []
 
-    def say_losses(self) -> None:
+    def report_losses(self) -> None:
         """Print the losses since the last report."""
         for each in self.inputs:
-            each.say_losses()
+            each.report_losses()
 
     def _listen(
         self,

@@ -58,7 +58,7 @@ class Input:
     def _receive(self, message: Any) -> None:
         self._lost += self._received.before(sequence_of(message))
         if self._lost and now_ns() > self._said_ns + LOSSES_SAID_EVERY_NS:
-            self.say_losses()
+            self.report_losses()
         if self._checked:
             check_payload(message, self._topic)
         self._callback(self, message)
@@ -67,7 +67,7 @@ class Input:
         """Return the number of messages skipped since the last processed one."""
         return self._processed.before(sequence_of(message))
 
-    def say_losses(self) -> None:
+    def report_losses(self) -> None:
         """Print how many messages of the topic were lost, if any."""
         if self._lost:
             self._said_ns = now_ns()

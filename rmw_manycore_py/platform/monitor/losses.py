@@ -25,7 +25,7 @@ class _Loss:
 
     endpoint: Endpoint
     count: int = 0
-    told_s: float | None = None
+    reported_s: float | None = None
 
 
 class Losses:
@@ -34,7 +34,7 @@ class Losses:
     def __init__(self) -> None:
         self._known: dict[_Key, _Loss] = {}
 
-    def told_of(self, loads: Loads) -> Iterator[Event]:
+    def events_of(self, loads: Loads) -> Iterator[Event]:
         """Yield the events due after these two samples."""
         for row, index in np.argwhere(loads.changes[:, _COLUMNS] > 0):
             endpoint, column = loads.graph.endpoints[row], _COLUMNS[index]
@@ -42,11 +42,11 @@ class Losses:
             loss.count += int(loads.changes[row, column])
         now_s = loads.after.time_s
         for (endpoint_id, column), loss in list(self._known.items()):
-            if loss.told_s is not None and now_s - loss.told_s < SUM_S:
+            if loss.reported_s is not None and now_s - loss.reported_s < SUM_S:
                 continue
             if loss.count:
-                yield _told(loss, column, now_s)
-                loss.count, loss.told_s = 0, now_s
+                yield _event_of(loss, column, now_s)
+                loss.count, loss.reported_s = 0, now_s
             else:
                 del self._known[endpoint_id, column]
 
@@ -54,12 +54,12 @@ class Losses:
         """Yield unreported losses, at the end of the platform."""
         for (_, column), loss in self._known.items():
             if loss.count:
-                yield _told(loss, column, now_s)
+                yield _event_of(loss, column, now_s)
 
 
-def _told(loss: _Loss, column: int, now_s: float) -> Event:
+def _event_of(loss: _Loss, column: int, now_s: float) -> Event:
     endpoint, count = loss.endpoint, loss.count
-    span = "" if loss.told_s is None else f" in {now_s - loss.told_s:.0f} s"
+    span = "" if loss.reported_s is None else f" in {now_s - loss.reported_s:.0f} s"
     if column == DEADLINES:
         times = "" if count == 1 else f" {count} times"
         text = f"{endpoint.topic}: {endpoint.node} missed its deadline{times}{span}"

@@ -159,7 +159,7 @@ class Watch:
         return (
             *events.deaths(newly),
             *events.receive_thread_deaths(since),
-            *seen.losses.told_of(since),
+            *seen.losses.events_of(since),
         )
 
     def _look_at_trace(self) -> None:

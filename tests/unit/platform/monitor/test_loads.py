@@ -125,7 +125,7 @@ def test_deaths_are_reported() -> None:
 
 
 def test_losses_and_missed_deadlines_are_reported() -> None:
-    assert [(one.kind, one.text) for one in Losses().told_of(LOADS)] == [
+    assert [(one.kind, one.text) for one in Losses().events_of(LOADS)] == [
         ("lost", "/t: 3 lost by /listener"),
         ("deadline", "/t: /listener missed its deadline 2 times"),
     ]
@@ -139,7 +139,7 @@ def test_what_goes_on_is_summed_up() -> None:
     for second in range(1, 41):
         lost += 3 if second <= 15 or second == 40 else 0
         samples.append(sample(float(second), [(C, [0, 0, lost])], {}))
-        told += [(second, one.text) for one in losses.told_of(Loads(*samples[-2:]))]
+        told += [(second, one.text) for one in losses.events_of(Loads(*samples[-2:]))]
     assert told == [
         (1, "/t: 3 lost by /listener"),
         (11, "/t: 30 lost by /listener in 10 s"),
@@ -152,8 +152,8 @@ def test_what_goes_on_is_summed_up() -> None:
 def test_unreported_changes_are_reported_at_the_end() -> None:
     losses = Losses()
     samples = [sample(float(n), [(C, [0, 0, 3 * n])], {}) for n in range(3)]
-    assert len(list(losses.told_of(Loads(*samples[:2])))) == 1
-    assert list(losses.told_of(Loads(*samples[1:]))) == []
+    assert len(list(losses.events_of(Loads(*samples[:2])))) == 1
+    assert list(losses.events_of(Loads(*samples[1:]))) == []
     (rest,) = losses.rest(4.0)
     assert rest.text == "/t: 3 lost by /listener in 3 s"
 
