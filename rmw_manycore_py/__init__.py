@@ -4,7 +4,7 @@
 ```python
 import rmw_manycore_py as manycore
 
-placement = manycore.resolve(manycore.load_mapfile("map.yaml"))  # MapfileError: what is wrong
+placement = manycore.resolve(manycore.load_mapfile("map.yaml"))  # MapfileError: every fault
 with manycore.run("map.yaml") as active:
     print(manycore.status(active.platform).nodes)
 ```

@@ -113,6 +113,6 @@ def what_is_wrong(error: Exception) -> str:
 
 
 def invalid_field(error: ValidationError) -> tuple[str, str]:
-    """Return the first invalid key, such as `nodes.0.name`, and what is wrong with it."""
+    """Return the first invalid key, such as `nodes.0.name`, and its fault."""
     first = error.errors()[0]
     return ".".join(map(str, first["loc"])), first["msg"]

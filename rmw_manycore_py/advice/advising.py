@@ -30,7 +30,7 @@ Report = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked for.
+    """A request for advice.
 
     :param chain: topics of the chain that matters; empty: all chains count alike.
     :param wishes: kind and text of constraints.

@@ -36,7 +36,7 @@ class Conflict:
 
 
 def conflict_in(problem: Problem, effort: Effort) -> Conflict | None:
-    """Return what is in conflict; None if a mapping is feasible or none was found in time."""
+    """Return the conflict; None if a mapping is feasible or none was found in time."""
     core = _core(problem, effort)
     if core is None:
         return None

@@ -97,7 +97,7 @@ def _spread(problem: Problem, units: Sequence[int], loads: Mapping[int, float]) 
 
 
 def _policies(problem: Problem) -> dict[int, Scheduling]:
-    """Return fifo for the hot chain: what is nearer to its end preempts what is farther."""
+    """Return fifo for the hot chain: a node nearer to its end preempts the others."""
     return {
         unit: Scheduling("fifo", min(_FIRST_PRIORITY + rank, 99))
         for rank, unit in enumerate(problem.hot)

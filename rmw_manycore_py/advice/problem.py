@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is to be placed, and what limits it."""
+"""Units to be placed, and their limits."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ _MAX_NAMES = 5
 
 
 def warnings_of(mapfile: Mapfile, placement: Placement, profile: Profile) -> Iterator[str]:
-    """Yield what is bad about a mapping, the worst first.
+    """Yield faults of a mapping, the worst first.
 
     :raises ManycoreError: if the profile is of another application.
     """

@@ -17,7 +17,7 @@ OURS = MIDDLEWARES[0]
 
 
 def measure(run: Run) -> list[Result]:
-    """Measure the share of a CPU, and what is lost."""
+    """Measure the share of a CPU, and the losses."""
     images = run.iterations(FULL_IMAGES)
     lost: dict[str, list[float]] = {}
 

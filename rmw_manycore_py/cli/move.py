@@ -30,7 +30,7 @@ def command(node: str, place: dict[str, int], platform: str) -> None:
 
     Without CORE, on the first free core of CLUSTER. The place is checked as by `manycore map
     check`: the core has to be free, and the cluster to have the memory. The mapfile is left as it
-    is; the command says which line to edit. The next `manycore up -d MAPFILE` moves NODE back,
+    is; the command names the line to edit. The next `manycore up -d MAPFILE` moves NODE back,
     unless the mapfile names the new place.
     """
     ((run, (name,)),) = nodes_by_run(living_runs(platform), [node])

@@ -23,7 +23,7 @@ def command(nodes: tuple[str, ...], platform: str) -> None:
     """Restart NODES, by default all.
 
     Nodes that have ended are started again. Nodes restart as their run read the mapfile, at the
-    places they have; if it places them otherwise by now, a notice says so, and `manycore up -d`
+    places they have; if it places them otherwise by now, a notice reports it, and `manycore up -d`
     applies it. Watches the nodes for one second; the exit status is 1 if one ends again in that
     time.
     """

@@ -69,7 +69,7 @@ def command(
     second Ctrl-C does not wait for slow nodes. The exit status is non-zero if a node failed. To
     run in the background, use manycore up -d.
 
-    In virtual time a run may take less time than --duration says. With --instant it is repeatable.
+    In virtual time a run may take less time than --duration. With --instant it is repeatable.
     """
     time = virtual_time(mapfile, virtual, instant, factor, profile, platform_name, seed)
     run, _ = prepared_run(mapfile, joins, nodes, virtual=time, host=host)

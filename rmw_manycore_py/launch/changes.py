@@ -34,7 +34,7 @@ class Changes:
 
     @classmethod
     def between(cls, old: Placement, new: Placement) -> Changes:
-        """Compare what runs with what is to run."""
+        """Compare the running placement with the new one."""
         before = {node.name: node for node in old.nodes}
         after = {node.name: node for node in new.nodes}
         common = {name: listed_changes(before[name], after[name]) for name in after.keys() & before}

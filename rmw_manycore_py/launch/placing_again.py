@@ -183,7 +183,7 @@ class PlacingAgain:
         return self._pidfd
 
     def result(self) -> Mapped:
-        """Return what is to run; raise ManycoreError as `Task.placed` does."""
+        """Return the mapping to run; raise ManycoreError as `Task.placed` does."""
         self._process.wait()
         self._answer.seek(0)
         data = self._answer.read()

@@ -95,7 +95,7 @@ class Run:
     ) -> int:
         placement, report = self._placement, reports.report
         programs = [*self._bridge, *programs_of(placement, parameters)]
-        # Other shells, in other directories, read what it says.
+        # An absolute path: shells in other directories read it.
         mapfile = replace(self._mode.mapfile, path=self._mode.mapfile.path.absolute())
         task = Task(Mapped(mapfile, placement), self._mode.joins, only_known=self._mode.only)
         with ExitStack() as stack:

@@ -23,7 +23,7 @@ _NS_PER_S = 1_000_000_000
 
 @dataclass(frozen=True)
 class PlatformModel:
-    """What says how long callbacks take: a profile, on a platform as of `manycore simulate`."""
+    """Model of the time that callbacks take: a profile, on a platform as of `manycore simulate`."""
 
     mapfile: Path
     profile: Path
@@ -36,7 +36,7 @@ class VirtualTime:
     """How a run keeps virtual time.
 
     :param factor: virtual seconds per second of CPU time of a callback; 0: callbacks take none.
-    :param model: says how long they take instead.
+    :param model: of the time that they take instead.
     """
 
     factor: float

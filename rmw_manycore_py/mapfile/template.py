@@ -162,7 +162,7 @@ def _entries_to_run(launch: LaunchFile, directory: Path) -> list[_Entry]:
 
 
 def _entries_to_plan(launch: LaunchFile, directory: Path) -> list[_Entry]:
-    """Return the nodes, each with a comment on what is not installed here."""
+    """Return the nodes, each with a comment on missing packages."""
     entries = _named_entries(launch.nodes, directory)
     for entry in entries:
         if entry.missing:

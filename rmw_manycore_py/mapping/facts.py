@@ -17,7 +17,7 @@ from rmw_manycore_py.trace.events import Trace
 
 @dataclass(frozen=True)
 class Facts:
-    """What is known about a placement.
+    """Facts about a placement.
 
     :param memory: of each cluster, when the nodes have started.
     :param topics: names of the known topics.

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is drawn of each cluster, before anything has a place."""
+"""Contents of each cluster's picture, before anything has a place."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is joined by a line: topics from cells to cells.
+"""Lines: topics from cells to cells.
 
 Topics that join the same cells are one line, and so are those of parallel pipelines: names and
 nodes that differ in a number only, between the same clusters.

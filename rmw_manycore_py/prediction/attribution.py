@@ -46,7 +46,7 @@ def rates_of_topics(profile: Profile) -> dict[str, float]:
 def heard_shares(profile: Profile) -> dict[str, float]:
     """Return which share of each topic's messages its median reader got.
 
-    What is published while an application starts reaches few readers.
+    Messages published while an application starts reach few readers.
     """
     read: dict[str, list[float]] = defaultdict(list)
     for one in profile.callbacks:

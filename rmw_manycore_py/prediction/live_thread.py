@@ -119,7 +119,7 @@ class LiveThread:
         then()
 
     def wait(self, then: Then) -> None:
-        """End the callback, and look for what is ready."""
+        """End the callback, and collect ready entities."""
         self._end(lambda: self._run(0.0, then))
 
     def _end(self, then: Then) -> None:

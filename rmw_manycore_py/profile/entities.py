@@ -88,7 +88,7 @@ class Entities:
         return self._publishers.get(handle)
 
     def registration(self, callback: Address) -> Registration | None:
-        """Return what is now registered at a callback's address."""
+        """Return the entity now registered at a callback's address."""
         return self._registrations.get(callback)
 
     def trigger(self, registration: Registration | None) -> TriggerSeen:

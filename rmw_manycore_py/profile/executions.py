@@ -42,7 +42,7 @@ class Executions:
 
     @property
     def counts(self) -> dict[str, int]:
-        """What is not part of a callback's statistics; see Coverage."""
+        """Executions outside of a callback's statistics; see Coverage."""
         running = sum(map(len, self._running.values()))
         return {**self._counts, "unfinished": self._counts["unfinished"] + running}
 

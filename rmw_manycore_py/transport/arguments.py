@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Checks of arguments: each error names the argument, what is expected and what is found."""
+"""Checks of arguments: each error names the argument, the expected and the found value."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ class Contest:
 
 
 def contest(plan: Plan, topics: tuple[str, ...], note: Callable[[str], None]) -> Contest:
-    """Ask for advice, and measure what is missing.
+    """Ask for advice, and measure missing mappings.
 
     :param topics: of the chain that matters; empty: the longest one of the mapfile's runs.
     :raises ManycoreError: if a run fails, or if no run has a message through that chain.

@@ -68,7 +68,7 @@ class Camera(Node):  # type: ignore[misc]
 
 
 class Filter(Node):  # type: ignore[misc]
-    """Cuts off what is too bright, in the image that it publishes again."""
+    """Clips pixels that are too bright, in the image that it publishes again."""
 
     def __init__(self) -> None:
         super().__init__("filter")

@@ -37,7 +37,7 @@ _START_S = 120.0  # within which the nodes of an application have started
 class Plan:
     """What to measure of an application.
 
-    :ivar directory: of its files; what is there already is not measured again.
+    :ivar directory: of its files; runs that are there are not measured again.
     """
 
     mapfile: Path
@@ -63,7 +63,7 @@ class Compared:
 
 
 def compared(plan: Plan, note: Callable[[str], None]) -> list[Compared]:
-    """Measure what is missing, predict all mappings, and return both.
+    """Measure missing runs, predict all mappings, and return both.
 
     :raises ManycoreError: if a run fails.
     """

@@ -32,7 +32,7 @@ def checked_answer(client: Client) -> Message:
 
 
 def unapplied(run: RunDirectory) -> Iterator[str]:
-    """Yield what the mapfile of a run says by now, if nodes run otherwise."""
+    """Yield changes of a run's mapfile that are not applied."""
     mapfile = run.info.get("mapfile")
     with Client(run, "apply", check=True) as client:
         try:

@@ -85,7 +85,7 @@ def virtual_options(command: Callable[..., Any]) -> Callable[..., Any]:
     profile = click.option(
         "--profile",
         type=click.Path(exists=True, dir_okay=False, path_type=Path),
-        help="In virtual time, callbacks take what this profile says, on the --platform.",
+        help="In virtual time, callbacks take the times of this profile, on the --platform.",
     )
     platform = click.option(
         "--platform",

@@ -59,9 +59,9 @@ def command(
 ) -> None:
     """Check this machine and installation.
 
-    Say how to fix what is wrong. The exit status is 0 unless a check fails; warnings do not
+    Name the cure of each fault. The exit status is 0 unless a check fails; warnings do not
     count. A report contains no messages, no secrets, and neither user nor host name; sections
-    that fail to collect say why.
+    that cannot be collected state the reason.
     """
     if target is not None:
         write_report(target, mapfile, lambda: _rows(_findings()), packages=not lean)

@@ -1,7 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Doctor checks: clusters of this machine, and what would keep other programs out of them.
 
-Nothing here is configured: each finding only reports what the kernel would add, and who allows it.
+Nothing here is configured: each finding only reports what the kernel could add,
+and what permits it.
 """
 
 from __future__ import annotations

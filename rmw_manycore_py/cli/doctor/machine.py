@@ -141,7 +141,7 @@ def _stale_platforms() -> Finding:
     dead = [name for name in names if not is_alive(name)]
     alive = len(names) - len(dead)
     found = f"{alive} alive" + (f", dead or unreadable: {', '.join(dead)}" if dead else "")
-    advice = "run `manycore clean`; if one remains, it says why"
+    advice = "run `manycore clean`; if one remains, it reports the reason"
     return advised(subject, not dead, found, advice)
 
 

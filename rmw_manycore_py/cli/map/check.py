@@ -34,7 +34,7 @@ from rmw_manycore_py.mapping.words import as_data, fit_of, verdict
 def command(mapfile: Path, trace: Path | None, as_json: bool) -> None:
     """Check MAPFILE and everything it refers to.
 
-    Nothing is started. The verdict says whether it fits, and what crosses clusters; with a trace,
+    Nothing is started. The verdict states whether it fits, and what crosses clusters; with a trace,
     at which rates.
     """
     checked = load_mapfile(mapfile)

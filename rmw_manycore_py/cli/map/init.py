@@ -38,7 +38,7 @@ from rmw_manycore_py.profile.files import load
 @click.option(
     "--plan",
     is_flag=True,
-    help="Include nodes that are not installed here, each with a comment on what is missing.",
+    help="Include nodes that are not installed here, each with a comment on missing packages.",
 )
 @click.option(
     "-o",

@@ -19,7 +19,7 @@ _errors: list[UnavailableError] = []
 
 
 def text_for(error: UnavailableError) -> str:
-    """Return the placeholder for what is missing."""
+    """Return the placeholder of a missing thing."""
     for number, known in enumerate(_errors):
         if (known.expected, known.found) == (error.expected, error.found):
             return f"{_ROOT}{number}"

@@ -32,8 +32,8 @@ class RoomError(MapfileError):
 class Proposal:
     """Where nodes of crowded clusters would fit.
 
-    :param placed: what is placed.
-    :param room: what is left in each cluster with room.
+    :param placed: nodes and foreign cores.
+    :param room: room left in each cluster that has some.
     :param moves: nodes to move, each with the cluster where it fits; empty if no way was found.
     """
 

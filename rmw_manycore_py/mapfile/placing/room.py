@@ -39,7 +39,7 @@ class Room:
 
 @dataclass(frozen=True)
 class Placed:
-    """What is placed: nodes, and cores of other runs on the platform."""
+    """Placed nodes, and cores of other runs on the platform."""
 
     mapfile: Mapfile
     nodes: Sequence[PlacedNode]
@@ -54,7 +54,7 @@ class Placed:
         return memory_of_clusters(self.mapfile.topology, self.nodes, self.topics())
 
     def room(self) -> list[Room]:
-        """Return what is left in each cluster."""
+        """Return the room left in each cluster."""
         return [
             Room(one.cluster, self.cores_left(one.cluster), one.room - one.total)
             for one in self.memory()

@@ -28,7 +28,7 @@ DAMAGED = "it is damaged or cut short"
 
 
 def why_unreadable(error: Exception) -> str:
-    """Return what is wrong with a file, in its own terms.
+    """Return the fault of a file, in its own terms.
 
     The messages of this package's own readers (ValueError) are kept, those of libraries are not.
     """

@@ -72,7 +72,7 @@ class Expectation:
 
     @property
     def middle(self) -> Pose:
-        """Return the middle of what is uncertain: half of the way that may have been driven."""
+        """Return the middle of the uncertainty: half of the way that may have been driven."""
         if self.gap is None:
             return self.poses[0]
         return self.gap.moved(self.last, self.gap.deviation_m)

@@ -25,7 +25,7 @@ _HEAD = "# Report of manycore doctor. It contains no messages; review it before 
 
 
 def report(findings: Section, mapfile: str | None, *, packages: bool = True) -> dict[str, Any]:
-    """Return all sections; a section without data says why.
+    """Return all sections; a section without data states the reason.
 
     :param findings: the doctor's findings.
     :param mapfile: path or name of a mapfile; default: those of running platforms.

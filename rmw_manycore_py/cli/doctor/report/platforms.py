@@ -55,7 +55,7 @@ def _snapshot(name: str) -> dict[str, Any]:
 
 
 def _line(endpoint: EndpointInfo) -> str:
-    """Return an endpoint in one line, with what it counted and what is out of the ordinary."""
+    """Return an endpoint in one line, with its counters and anything unusual."""
     from rmw_manycore_py.cli.common.rows import counters_row
     from rmw_manycore_py.ros.names import full_node_name
     from rmw_manycore_py.ros.qos import policies_of

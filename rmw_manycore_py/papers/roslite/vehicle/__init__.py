@@ -1,2 +1,2 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is outside the chip: a street, a vehicle with a LiDAR, and what they see of the pipeline."""
+"""The outside of the chip: a street, a vehicle with a LiDAR, and what they see of the pipeline."""
