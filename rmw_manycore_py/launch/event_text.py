@@ -8,9 +8,9 @@ from rmw_manycore_py.launch.events import (
     Event,
     Finished,
     Held,
-    Insisting,
     Notice,
     Restarting,
+    SignalEscalated,
     Started,
     Stopping,
 )
@@ -32,7 +32,7 @@ def text_of(event: Event) -> str | None:
         )
     if isinstance(event, Stopping):
         return f"stopping: {event.reason}"
-    if isinstance(event, Insisting):
+    if isinstance(event, SignalEscalated):
         return f"{event.node} does not stop: sending {event.signal}"
     if isinstance(event, Restarting):
         return f"{event.node} is started again: {event.reason}"

@@ -90,7 +90,7 @@ class Stopping(Event):
 
 
 @dataclass(frozen=True)
-class Insisting(Event):
+class SignalEscalated(Event):
     """A node did not stop in time and was sent a stronger signal."""
 
     node: str
@@ -126,7 +126,7 @@ class Finished(Event):
     exit_status: int
 
 
-KINDS = (Platform, Notice, Held, Started, Stopping, Insisting, Restarting, Ended, Finished)
+KINDS = (Platform, Notice, Held, Started, Stopping, SignalEscalated, Restarting, Ended, Finished)
 
 
 def event_of(data: Mapping[str, Any]) -> Event | None:

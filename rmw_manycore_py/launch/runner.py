@@ -16,10 +16,10 @@ from rmw_manycore_py.launch.events import (
     Ended,
     Event,
     Held,
-    Insisting,
     Notice,
     Output,
     Restarting,
+    SignalEscalated,
     Started,
     Stopping,
 )
@@ -36,7 +36,7 @@ Handler = Callable[[], None]
 # Restart period of a supervised process that keeps ending.
 RESTART_PAUSE_S = 1.0
 # After this many consecutive processes that ended before coming up, stop restarting.
-MAX_VAIN_STARTS = 3
+MAX_FAILED_STARTS = 3
 
 
 class Readable(Protocol):
@@ -231,14 +231,14 @@ class Runner:
 
     def _restart(self, node: NodeProcess) -> None:
         assert node.ending is not None
-        vain_starts = 0 if node.came_up else node.vain_starts + 1
-        if vain_starts == MAX_VAIN_STARTS:
+        failed_starts = 0 if node.came_up else node.failed_starts + 1
+        if failed_starts == MAX_FAILED_STARTS:
             self._report_end(node)
-            self._stop(f"{node.program.name} ended {vain_starts} times before it had come up")
+            self._stop(f"{node.program.name} ended {failed_starts} times before it had come up")
             return
         self.report(Restarting(node.program.name, node.ending.reason, node.last_lines))
         successor = NodeProcess(node.program)
-        successor.vain_starts = vain_starts
+        successor.failed_starts = failed_starts
         successor.start_at_s = max(time.monotonic(), node.start_at_s + RESTART_PAUSE_S)
         self._nodes[self._nodes.index(node)] = successor
 
@@ -347,7 +347,7 @@ class Runner:
             if node.is_alive and not node.is_leaderless and node.deadline_s <= now_s:
                 number = node.stop()
                 if number:
-                    self.report(Insisting(node.program.name, number.name))
+                    self.report(SignalEscalated(node.program.name, number.name))
 
     def _keep_deadlines(self) -> None:
         now_s = time.monotonic()

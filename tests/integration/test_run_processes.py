@@ -243,7 +243,10 @@ def test_a_stubborn_node_is_killed_when_its_time_is_up(start_run: StartRun) -> N
     run.wait_for_lines("ready", "node")
     run.program.signal(signal.SIGINT)
     assert run.program.wait() == 1
-    assert [e["signal"] for e in run.events if e["event"] == "insisting"] == ["SIGTERM", "SIGKILL"]
+    assert [e["signal"] for e in run.events if e["event"] == "signal_escalated"] == [
+        "SIGTERM",
+        "SIGKILL",
+    ]
     assert "did not stop" in run.event("ended")["reason"]
 
 
@@ -266,7 +269,7 @@ def test_stopped_processes_are_stopped_too(start_run: StartRun) -> None:
     wait_until(lambda: state_of(pid) == "T", "the node is stopped")
     for _ in range(3):
         run.program.signal(signal.SIGINT)
-        run.program.wait_for('"stopping"|"insisting"')
+        run.program.wait_for('"stopping"|"signal_escalated"')
     assert run.program.wait() == 1
     assert is_gone(pid)
 

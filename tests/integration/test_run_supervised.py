@@ -73,7 +73,7 @@ def events(program: Program, kind: str, node: str) -> list[dict]:
 def test_what_never_comes_up_ends_the_run(start_server, status: int) -> None:
     run = start_server(DIES_AT_ONCE, str(status))
     assert run.wait() == 1
-    assert len(events(run, "started", "server")) == runner.MAX_VAIN_STARTS
+    assert len(events(run, "started", "server")) == runner.MAX_FAILED_STARTS
     (ended,) = events(run, "ended", "server")
     assert (ended["state"], ended["reason"]) == ("failed", f"exit status {status}")
     assert ended["last_lines"] == ["why"]

@@ -20,11 +20,11 @@ from rmw_manycore_py.launch.events import (
     Ended,
     Event,
     Finished,
-    Insisting,
     Notice,
     Output,
     Platform,
     Restarting,
+    SignalEscalated,
 )
 from rmw_manycore_py.platform.topology import host_cpu_text
 
@@ -40,7 +40,7 @@ COLOURS = (
     "bright_magenta",
     "bright_blue",
 )  # red is for failures
-_WARNINGS = (Notice, Insisting, Restarting)
+_WARNINGS = (Notice, SignalEscalated, Restarting)
 
 
 class RunPrinter:

@@ -44,7 +44,7 @@ class NodeProcess:
         self.was_asked_for = False  # restarted by request: a failing start does not end the run
         self.pidfd = -1  # open while the node runs
         self.came_up = not program.supervised  # supervised processes report it
-        self.vain_starts = 0  # number of earlier processes that ended before coming up
+        self.failed_starts = 0  # number of earlier processes that ended before coming up
         self._process: subprocess.Popen[bytes] | None = None
         self._output: OutputReader | None = None
         self._readiness: Readiness | None = None

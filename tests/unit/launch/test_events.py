@@ -5,15 +5,15 @@ import json
 
 import pytest
 
-from rmw_manycore_py.launch.events import Insisting, PlacedCore, Platform
+from rmw_manycore_py.launch.events import PlacedCore, Platform, SignalEscalated
 
 pytestmark = pytest.mark.unit
 
 
 def test_an_event_is_one_line_with_its_kind_first() -> None:
-    line = Insisting("talker", "SIGTERM").as_json()
+    line = SignalEscalated("talker", "SIGTERM").as_json()
     assert "\n" not in line
-    assert json.loads(line) == {"event": "insisting", "node": "talker", "signal": "SIGTERM"}
+    assert json.loads(line) == {"event": "signal_escalated", "node": "talker", "signal": "SIGTERM"}
     assert line.startswith('{"event": ')
 
 
