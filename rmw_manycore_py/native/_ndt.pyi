@@ -147,6 +147,41 @@ class SerialMatcher:
         pose: NDArray[np.float64],
         polishing: int = 0,
     ) -> Derivatives: ...
+    def search(self, search: PlaceSearch, descends: bool, for_s: float) -> bool:
+        """Work on the first or second phase of a search; return whether all of it is done."""
+
+class SearchMap:
+    """Where something is in a voxel map, in columns of 1 m, in memory that workers share."""
+
+    def __init__(self, voxel_map: VoxelMap) -> None: ...
+    @property
+    def size_bytes(self) -> int: ...
+
+class PlaceSearch:
+    """A search of the places at which most of some points are at something in the map.
+
+    :param points: (n, 3) [m] of a level scan: x, y from the sensor on, z above the ground.
+    :param yaws: number of directions that are compared.
+    :param kept_permille: places with fewer of the best one's points are not kept.
+    """
+
+    def __init__(
+        self,
+        search_map: SearchMap,
+        points: NDArray[np.float32],
+        yaws: int,
+        kept_permille: int,
+        centre_m: tuple[float, float],
+        radius_m: float,
+    ) -> None: ...
+    def order_roots(self) -> None:
+        """Sort what the first phase has ranked, for the second one."""
+
+    def found(self, limit: int) -> list[tuple[float, float, float, float, int]]:
+        """Return x, y, ground [m], yaw [rad] and points of distinct places, best first."""
+
+    @property
+    def size_bytes(self) -> int: ...
 
 class WorkerGroup:
     """Matches on worker processes that run `program`, one per host CPU."""
@@ -168,6 +203,9 @@ class WorkerGroup:
         pose: NDArray[np.float64],
         polishing: int = 0,
     ) -> Derivatives: ...
+    def search(self, search: PlaceSearch, descends: bool, for_s: float) -> bool:
+        """Work on the first or second phase of a search; return whether all of it is done."""
+
     def prepare(self, maps: list[VoxelMap]) -> None:
         """Let the workers map it, so that the next alignment need not wait for that."""
 

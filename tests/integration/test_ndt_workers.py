@@ -18,7 +18,8 @@ import numpy as np
 import pytest
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap, WorkerMatcher
+from rmw_manycore_py.ndt import Matcher, MatcherOptions, SerialMatcher, VoxelMap, WorkerMatcher
+from rmw_manycore_py.ndt.trust.search import Region, search
 from support import wait_until
 from support.nodes.scan_matching import killed_as_they_come
 from support.processes.inspection import is_asleep, kill
@@ -77,6 +78,34 @@ def test_any_number_of_workers_finds_the_same_pose_bit_for_bit(count: int) -> No
         for guess in (GUESS, TRUE, pose(40.9, 0, 1.8, 0, 0, 0.25), FAR):
             assert numbers(matcher.align(SCAN, guess)) == numbers(alone().align(SCAN, guess))
         assert matcher.score(SCAN, GUESS) == alone().score(SCAN, GUESS)
+
+
+def places(matcher: Matcher) -> list[tuple[Any, ...]]:
+    """Return where a search of the whole map finds the scan, best first."""
+    region = Region(pose(0, 0, 0, 0.01, -0.02, 0), np.inf, any_yaw=True)
+    return [numbers(place) for place in search(matcher, SCAN, region).places]
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_any_number_of_workers_finds_the_same_places(count: int) -> None:
+    with workers(count) as matcher:
+        found = places(matcher)
+    assert found == places(alone())
+    assert np.linalg.norm(np.array(found[0][0])[:2, 3] - TRUE[:2, 3]) < 0.1
+
+
+def test_workers_killed_in_the_middle_of_searches_are_replaced_and_miss_nothing() -> None:
+    expected = places(alone())
+    rng = np.random.default_rng(2)
+    with workers(3) as matcher:
+        for i in range(8):
+            victim = matcher.worker_pids[i % 3]
+            killer = threading.Timer(rng.uniform(0, 0.1), kill, (victim,))
+            killer.start()
+            assert places(matcher) == expected
+            killer.join()
+        matcher.score(SCAN, GUESS)
+        assert matcher.replaced_workers >= 8
 
 
 def test_each_worker_is_a_process_on_its_cpu() -> None:

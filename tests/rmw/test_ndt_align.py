@@ -85,6 +85,28 @@ def test_activation_and_initial_pose(stack, start):
     assert not answer.result().success
 
 
+def test_without_a_guess_the_map_is_searched(stack, start):
+    """The place of a scan is found wherever it is; a scan of another place is refused."""
+    start(matcher_command(), cluster=2)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    stack.pose_of(street_scan(), NEAR)
+    align = stack.node.create_client(AlignService, "ndt_align_srv")
+    assert align.wait_for_service(TIMEOUT_S)
+    anywhere = np.diag([1e6, 1e6, 0.01, 0.0001, 0.0001, 10.0])
+    nowhere = from_xyz_rpy((-50.0, 70.0, 0.0), (0.0, 0.0, 2.0))
+    request = AlignService.Request(
+        pose_with_covariance=pose_with_covariance(nowhere, anywhere, stack.stamp(), "map")
+    )
+    answer = answer_of(stack, align, request)
+    assert answer.success
+    assert answer.reliable
+    assert error_m(matrix_of(answer.pose_with_covariance.pose.pose)) < 0.1
+
+    stack.report_of(stack.send(street_scan()[:, [2, 0, 1]], NEAR))  # walls for ground
+    assert not answer_of(stack, align, request).success
+
+
 def test_scans_are_matched_while_a_pose_is_searched(stack, start):
     """Autoware's service type of 2024 and before gives the same pose, and delays no scan."""
     few_guesses = {

@@ -223,6 +223,11 @@ def test_a_first_pose_of_the_parameters(unmatched, start):
     assert error_m(first_pose(unmatched)) < 0.1
 
 
+def test_a_first_pose_without_any_guess(unmatched, start):
+    start(initializer("search_map:=true"))
+    assert error_m(first_pose(unmatched)) < 0.1
+
+
 def test_a_first_pose_of_gnss(unmatched, start):
     """It contains no direction; old positions are skipped, and later ones change nothing."""
     program = start(initializer("gnss_enabled:=true"))

@@ -37,7 +37,7 @@ FOLDERS = {
         *("common", "serialization", "borrowing", "events", "context", "qos", "graph", "topics"),
         *("services", "waiting"),
     ],
-    "ndt": ["common", "map", "kernel", "optimisation", "matching"],
+    "ndt": ["common", "map", "kernel", "optimisation", "search", "matching"],
 }
 # Folders that others see through one header, and those that see all of it; what they keep to
 # themselves is a word in no other file, but for the layout of memory.

@@ -1,6 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "ndt/matching/serial_matcher.hpp"
 
+#include "platform/clock.hpp"
+
 namespace manycore::ndt {
 
 Problem SerialMatcher::problem(const MapView & map, const float * xyz_m, size_t count) {
@@ -22,6 +24,12 @@ NewtonResult SerialMatcher::align(
 Derivatives SerialMatcher::evaluate(
   const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose) {
   return evaluate_alone(problem(descent_of(levels).scored(), xyz_m, count), kernel_, pose);
+}
+
+bool SerialMatcher::search(PlaceSearch & search, SearchPhase phase, int64_t for_ns) {
+  const int64_t end_ns = monotonic_ns() + for_ns;
+  search.work(phase, [end_ns] { return monotonic_ns() >= end_ns; });
+  return search.is_done();
 }
 
 }  // namespace manycore::ndt

@@ -5,6 +5,7 @@
 
 #include "ndt/common/aligned_floats.hpp"
 #include "ndt/matching/matcher.hpp"
+#include "ndt/search/place_search.hpp"
 
 namespace manycore::ndt {
 
@@ -21,6 +22,8 @@ public:
   /// Derivatives at a pose, on the scored level.
   Derivatives evaluate(
     const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose);
+  /// Works on a phase of a search for about `for_ns`; true if all of it is done.
+  static bool search(PlaceSearch & search, SearchPhase phase, int64_t for_ns);
 
 private:
   Problem problem(const MapView & map, const float * xyz_m, size_t count);

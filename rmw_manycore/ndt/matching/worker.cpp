@@ -83,10 +83,28 @@ void Worker::attach_maps() {
 }
 
 void Worker::do_job(uint32_t job) {
-  const Job & what = session_.what;
-  if (what.levels == 0) {
-    return;  // a first job, which only checks that all workers run
+  if (session_.what.kind == JobKind::search) {
+    search(job);
+  } else if (session_.what.levels > 0) {  // 0: a first job, which only checks that all workers run
+    align(job);
   }
+}
+
+void Worker::search(uint32_t job) {
+  const Job & what = session_.what;
+  if (!searched_ || searched_->id != what.search.id) {
+    searched_.reset();
+    searched_ = std::make_unique<AttachedSearch>(what);
+  }
+  searched_->search.work(what.search_phase, [&] {
+    return monotonic_ns() >= what.search_end_ns ||
+           session_.aborted.load(std::memory_order_relaxed) == job;
+  });
+}
+
+void Worker::align(uint32_t job) {
+  const Job & what = session_.what;
+  searched_.reset();
   attach();
   const int64_t start_ns = monotonic_ns();
   job_ = job;

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,10 +26,24 @@ private:
     VoxelMap map;
   };
 
+  /// A search that this worker takes part in, until its next alignment.
+  struct AttachedSearch {
+    explicit AttachedSearch(const Job & what)
+    : id(what.search.id),
+      map(SharedMemory::attach(what.search_map.path)),
+      search(map, SharedMemory::attach(what.search.path)) {}
+
+    uint64_t id;
+    SearchMap map;
+    PlaceSearch search;
+  };
+
   bool all_finished(uint32_t job) const noexcept;
   void attach();
   void attach_maps();
   void do_job(uint32_t job);
+  void align(uint32_t job);
+  void search(uint32_t job);
   /// Sums of all bins at a pose; empty if the job is aborted.
   std::optional<TangentSums> pass(const Problem & problem, const Pose6 & pose);
   /// Records begin and end of the share of the current pass.
@@ -41,6 +56,7 @@ private:
   uint32_t index_;
   Kernel kernel_;
   std::vector<AttachedMap> maps_;  ///< levels of the last job
+  std::unique_ptr<AttachedSearch> searched_;
   SharedMemory scan_;
   uint64_t scan_id_ = 0;
   uint32_t job_ = 0;

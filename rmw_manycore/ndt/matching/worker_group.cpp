@@ -19,6 +19,8 @@ constexpr int64_t look_ns = 10'000'000;
 /// stuck. The longest realistic pass, 2 million points by radius in portable code, takes 0.5 s on
 /// one core.
 constexpr int64_t stuck_ns = 5 * ns_per_s;
+/// Workers do not meet in a search, so one that takes long is not yet stuck.
+constexpr int64_t longest_search_ns = ns_per_s;
 /// Workers on other CPUs reach a barrier within this time unless something is wrong.
 constexpr int64_t spin_ns = 200'000;
 constexpr int max_attempts = 5;
@@ -80,6 +82,7 @@ void WorkerGroup::put_scan(const float * xyz_m, size_t count) {
 void WorkerGroup::put_levels(const Levels & levels) {
   check_levels(levels);
   Job & what = session_.what;
+  what.kind = JobKind::align;
   what.levels = what.end_level = static_cast<uint32_t>(levels.maps.size());
   what.first_level = static_cast<uint32_t>(levels.first);
   what.polishing = static_cast<uint32_t>(levels.polishing);
@@ -99,7 +102,8 @@ NewtonResult WorkerGroup::align(
   what.guess = guess;
   what.has_regularization = regularization.has_value();
   what.regularization = regularization.value_or(Regularization{});
-  return run_job();
+  run_job();
+  return session_.result;
 }
 
 Derivatives WorkerGroup::evaluate(
@@ -115,7 +119,23 @@ Derivatives WorkerGroup::evaluate(
   what.options.max_iterations = 0;
   what.guess = pose;
   what.has_regularization = false;
-  return run_job().at;
+  run_job();
+  return session_.result.at;
+}
+
+bool WorkerGroup::search(PlaceSearch & search, SearchPhase phase, int64_t for_ns) {
+  const std::lock_guard lock(busy_);
+  Job & what = session_.what;
+  what.kind = JobKind::search;
+  name_part(what.search_map, search.map().header().id, search.map().memory());
+  name_part(what.search, search.head().id, search.memory());
+  what.search_phase = phase;
+  what.search_end_ns = monotonic_ns() + std::min(for_ns, longest_search_ns);
+  // What a killed worker had begun is begun again.
+  std::atomic<uint32_t> & next = search.head().next;
+  const uint32_t first = next.load(std::memory_order_relaxed);
+  run_job([&] { next.store(first, std::memory_order_relaxed); });
+  return search.is_done();
 }
 
 void WorkerGroup::prepare(const Levels & levels) { evaluate(levels, nullptr, 0, Pose6{}); }
@@ -146,11 +166,12 @@ std::vector<std::vector<WorkerPass>> WorkerGroup::passes() const {
   return out;
 }
 
-NewtonResult WorkerGroup::run_job() {
+void WorkerGroup::run_job(const std::function<void()> & before_attempt) {
   for (int i = 0; i < max_attempts; ++i) {
     replace_ended_workers();
+    before_attempt();
     if (attempt()) {
-      return session_.result;
+      return;
     }
   }
   throw Error(

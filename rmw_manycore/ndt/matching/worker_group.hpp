@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -27,6 +28,8 @@ public:
   /// Derivatives at a pose, on the scored level.
   Derivatives evaluate(
     const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose);
+  /// Works on a phase of a search for about `for_ns`; true if all of it is done.
+  bool search(PlaceSearch & search, SearchPhase phase, int64_t for_ns);
   /// Makes the workers map the levels, so that the next alignment does not have to wait for it.
   void prepare(const Levels & levels);
 
@@ -43,7 +46,8 @@ public:
 private:
   void put_levels(const Levels & levels);
   void put_scan(const float * xyz_m, size_t count);
-  NewtonResult run_job();
+  /// Runs a job until no worker dies in it; calls `before_attempt` each time.
+  void run_job(const std::function<void()> & before_attempt = [] {});
   bool attempt();
   void wait_for_workers(uint32_t job);
   bool all_finished(uint32_t job) const noexcept;

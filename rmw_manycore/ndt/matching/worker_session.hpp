@@ -9,6 +9,7 @@
 
 #include "ndt/matching/matcher.hpp"
 #include "ndt/optimisation/newton.hpp"
+#include "ndt/search/place_search.hpp"
 #include "platform/futex.hpp"
 
 namespace manycore::ndt {
@@ -21,8 +22,11 @@ struct SharedPart {
   char path[64];
 };
 
+enum class JobKind : uint32_t { align, search };
+
 /// Parameters of a job; written by the coordinator while all workers sleep.
 struct Job {
+  JobKind kind;
   SharedPart maps[max_levels];  ///< coarsest first; workers keep only these attached
   uint32_t levels;              ///< 0 = only check that all workers run
   uint32_t first_level;         ///< level to start the alignment on
@@ -35,6 +39,10 @@ struct Job {
   bool has_regularization;
   Regularization regularization;
   int64_t spin_ns;  ///< time in ns to spin at a barrier before sleeping
+  SharedPart search_map;
+  SharedPart search;
+  SearchPhase search_phase;
+  int64_t search_end_ns;  ///< CLOCK_MONOTONIC; no part of a search is begun after it
 };
 static_assert(std::is_trivially_copyable_v<Job>);
 

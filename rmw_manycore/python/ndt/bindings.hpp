@@ -11,5 +11,6 @@ void bind_voxel_map(nanobind::module_ & module);
 void bind_results(nanobind::module_ & module);
 void bind_matchers(nanobind::module_ & module);
 void bind_pairs(nanobind::module_ & module);
+void bind_place_search(nanobind::module_ & module);
 
 }  // namespace manycore::ndt::python

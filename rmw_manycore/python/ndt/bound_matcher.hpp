@@ -12,6 +12,8 @@
 
 #include "ndt/matching/matcher.hpp"
 #include "ndt/optimisation/newton.hpp"
+#include "ndt/search/place_search.hpp"
+#include "platform/clock.hpp"
 #include "python/ndt/arrays.hpp"
 
 namespace manycore::ndt::python {
@@ -45,6 +47,12 @@ public:
     return matcher_.evaluate(levels, points.data(), points.shape(0), pose_from(pose));
   }
 
+  bool search(PlaceSearch & search, bool descends, double for_s) {
+    const nanobind::gil_scoped_release released;
+    const SearchPhase phase = descends ? SearchPhase::descend : SearchPhase::bound;
+    return matcher_.search(search, phase, static_cast<int64_t>(for_s * ns_per_s));
+  }
+
   Matcher & matcher() { return matcher_; }
 
 private:
@@ -64,6 +72,15 @@ nanobind::class_<Bound<Matcher>> bind_matcher(nanobind::module_ & module, const 
     .def(
       "evaluate", &Self::evaluate, nanobind::arg("maps"), nanobind::arg("points"),
       nanobind::arg("pose"), nanobind::arg("polishing") = 0);
+}
+
+/// Binds a matcher that also searches places.
+template<typename Matcher>
+nanobind::class_<Bound<Matcher>> bind_searcher(nanobind::module_ & module, const char * name) {
+  return bind_matcher<Matcher>(module, name)
+    .def(
+      "search", &Bound<Matcher>::search, nanobind::arg("search"), nanobind::arg("descends"),
+      nanobind::arg("for_s"));
 }
 
 }  // namespace manycore::ndt::python

@@ -40,9 +40,9 @@ std::vector<std::tuple<size_t, size_t, int64_t, int64_t>> passes(Group & group) 
 }  // namespace
 
 void bind_matchers(nb::module_ & module) {
-  bind_matcher<SerialMatcher>(module, "SerialMatcher")
+  bind_searcher<SerialMatcher>(module, "SerialMatcher")
     .def(nb::init<const MatchOptions &>(), nb::arg("options"));
-  bind_matcher<WorkerGroup>(module, "WorkerGroup")
+  bind_searcher<WorkerGroup>(module, "WorkerGroup")
     .def(
       nb::init<const MatchOptions &, const std::string &, const std::vector<int> &>(),
       nb::arg("options"), nb::arg("program"), nb::arg("host_cpus"))

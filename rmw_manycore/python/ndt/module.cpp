@@ -16,5 +16,6 @@ NB_MODULE(_ndt, module) {
   python::bind_results(module);
   python::bind_matchers(module);
   python::bind_pairs(module);
+  python::bind_place_search(module);
   module.def("simd", [] { return name_of(choose_simd()); });
 }

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from rmw_manycore_py.bench.ndt.apart import Align, apart, matchers_apart
 from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, map_for, on_cpu, one_level, usable
@@ -68,7 +69,9 @@ def _measure(run: Run, pclomp: Path | None) -> list[Result]:
             matcher.set_map(voxel_map)
             contenders[workers(count)] = _own(run, matcher.align)
             curves[workers(count)] = Curve("rmw_manycore workers", count)
-            native = _ndt_bench.ThreadMatcher(match_options(options), cpus[:count], [])
+            native: Any = _ndt_bench.ThreadMatcher(  # aligns, but searches no places
+                match_options(options), cpus[:count], []
+            )
             threaded = stack.enter_context(Matcher(options, native))
             threaded.set_map(voxel_map)
             contenders[threads(count)] = _own(run, threaded.align)

@@ -19,7 +19,6 @@ from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Pose, ScanPoints, scan_points
 from rmw_manycore_py.ndt.geometry.thinning import spread_indices
 from rmw_manycore_py.ndt.trust.judge import PoseJudge, Verdict
-from rmw_manycore_py.ndt.trust.region_search import sketcher_of
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
 from rmw_manycore_py.ndt.trust.search import Found, Region, search
 
@@ -93,8 +92,7 @@ def world_of(drive: str) -> World:
 def searched(drive: str, index: int, region: Region) -> Found:
     """Search for a scan of a drive like the node does."""
     world = world_of(drive)
-    sketcher = sketcher_of(world.voxel_map, world.drive.options)
-    return search(sketcher, world.matcher, world.scan(index), region)
+    return search(world.matcher, world.scan(index), region)
 
 
 @dataclass(frozen=True)

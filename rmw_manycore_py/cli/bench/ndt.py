@@ -13,6 +13,7 @@ from rmw_manycore_py.bench.ndt import (
     alignments,
     basin,
     gaps,
+    lost,
     node,
     passes,
     split,
@@ -34,9 +35,9 @@ def command(pclomp: Path | None, **options: Any) -> None:
 
     PCL, pclomp, small_gicp and Open3D; also over workers. Also measures the convergence basin,
     the rates of wrong poses believed and right poses refused, closed loops through gaps without
-    scans and through a tunnel, and the whole node: beside CPU
+    scans and through a tunnel, scans without a guess in a large map, and the whole node: beside CPU
     load, with large scans, with new maps, and after a kill.
     """
-    own = [split.QUESTION, basin.QUESTION, trust.QUESTION, gaps.QUESTION]
+    own = [split.QUESTION, basin.QUESTION, trust.QUESTION, gaps.QUESTION, lost.QUESTION]
     own += [accuracy.QUESTION, node.QUESTION]
     answer([passes.question(pclomp), alignments.question(pclomp), *own], **options)

@@ -56,7 +56,7 @@ KEPT_SHARE = 0.98  # of the wanted rate: less is reported
 @click.option(
     "--guess",
     "kind",
-    type=click.Choice(["odometry", "velocity", "perturbed", "stack"]),
+    type=click.Choice(["odometry", "velocity", "perturbed", "stack", "lost"]),
     default="odometry",
     show_default=True,
     help="Guesses: closed loop with odometry or constant velocity; perturbed reference; or none.",

@@ -78,6 +78,10 @@ class NativeMatcher(Protocol):
         """Return score and derivatives at a pose on the last map but `polishing`."""
         ...
 
+    def search(self, search: _ndt.PlaceSearch, descends: bool, for_s: float) -> bool:
+        """Work on a phase of a search; return whether all of it is done."""
+        ...
+
 
 class Matcher:
     """Matches scans to a map. Not thread-safe; the map may be swapped between alignments.
@@ -308,6 +312,22 @@ class Matcher:
         with translate_native_errors(CANNOT_WORK):
             found = self._native.evaluate(voxel_map.levels, scan, pose, voxel_map.polishing)
         return Score.of(found)
+
+    @property
+    def map(self) -> VoxelMap:
+        """Return the map in use.
+
+        :raises ManycoreError: if there is none yet.
+        """
+        return self._require_map()
+
+    def work_on(self, search: _ndt.PlaceSearch, *, descends: bool, for_s: float) -> bool:
+        """Work on a phase of a search for some time; return whether all of it is done.
+
+        :param descends: the second phase, which looks into the squares that the first one ranks.
+        """
+        with translate_native_errors(CANNOT_WORK):
+            return self._native.search(search, descends, for_s)
 
     def explained(self, alignment: Alignment, points: ArrayLike) -> Alignment:
         """Return an alignment of points (N, 3) with its `explained_score`.

@@ -88,7 +88,7 @@ class _Closed:
     def align(self, *_: object) -> NoReturn:
         raise ManycoreError("the matcher is closed", EXIT_BAD_INPUT)
 
-    evaluate = align
+    evaluate = search = align
 
 
 def _worker_program() -> Path:

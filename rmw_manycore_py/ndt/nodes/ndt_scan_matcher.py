@@ -25,6 +25,7 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.align_services import AlignParts, Al
 from rmw_manycore_py.ndt.nodes.scan_matcher.cluster_memory import ClusterMemory
 from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
 from rmw_manycore_py.ndt.nodes.scan_matcher.frame_tree import FrameTree
+from rmw_manycore_py.ndt.nodes.scan_matcher.lost import search_region
 from rmw_manycore_py.ndt.nodes.scan_matcher.map_supply import MapSupply
 from rmw_manycore_py.ndt.nodes.scan_matcher.markers import PoseMarkers
 from rmw_manycore_py.ndt.nodes.scan_matcher.matcher_options import matcher_options
@@ -120,6 +121,7 @@ class NdtScanMatcher(Node):
                 self._take_new_map,
                 lambda: self._scan,
                 self._aligned_to,
+                partial(search_region, self._matcher, self._memory),
                 self._markers.particles,
             ),
         )

@@ -31,6 +31,7 @@ from rmw_manycore_py.ndt.nodes.support.running import run_node
 VARIANCES = (1.0, 1.0, 0.01, 0.01, 0.01, 0.2)  # m^2, rad^2
 AT_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)  # x, y, z, quaternion
 GNSS_VARIANCES = (*VARIANCES[:5], 10.0)  # GNSS does not measure the heading
+ANYWHERE_M = 1000.0  # standard deviation without a pose: the matcher searches the map
 RETRY_S = 1.0
 ANSWER_TIMEOUT_S = 60.0  # 200 alignments of 300 ms: slow host, large scans
 UNINITIALIZED, INITIALIZING, INITIALIZED = "UNINITIALIZED", "INITIALIZING", "INITIALIZED"
@@ -43,7 +44,7 @@ def _diagonal(variances: Sequence[float]) -> tuple[float, ...]:
 
 @dataclass(frozen=True)
 class InitializerParameters:
-    """Autoware's parameters."""
+    """Autoware's parameters, and `search_map`."""
 
     user_defined: bool = parameter("user_defined_initial_pose.enable", False)
     pose: tuple[float, ...] = parameter("user_defined_initial_pose.pose", AT_ORIGIN, length=7)
@@ -58,10 +59,13 @@ class InitializerParameters:
         "output_pose_covariance", _diagonal(VARIANCES), length=36
     )
     map_frame: str = parameter("map_frame", "map")
+    searches_map: bool = parameter("search_map", False)
 
 
 class PoseInitializer(Node):
     """Waits for `initialpose` (as sent by RViz), or starts at the pose of its parameters or GNSS.
+
+    With `search_map` the matcher searches its map, from the pose of the parameters on.
 
     Deactivates matcher and filter, has the pose matched by `ndt_align`, publishes it on
     `initialpose3d`, and reactivates both. Failures are retried once a second with the newest pose.
@@ -97,7 +101,7 @@ class PoseInitializer(Node):
             )
         self.create_timer(RETRY_S, self._try)
         self._publish_state(UNINITIALIZED)
-        if self._p.user_defined:
+        if self._p.user_defined or self._p.searches_map:
             self._on_initial_pose(self._user_defined())
 
     def _user_defined(self) -> Any:
@@ -111,6 +115,8 @@ class PoseInitializer(Node):
         T[:3, 3] = self._p.pose[:3]
         T[:3, :3] = from_quaternion(quaternion)
         covariance = np.asarray(self._p.covariance, np.float64).reshape(6, 6)
+        if self._p.searches_map:
+            covariance[:2, :2] = np.diag([ANYWHERE_M**2] * 2)
         return pose_with_covariance(
             T, covariance, self.get_clock().now().to_msg(), self._p.map_frame
         )

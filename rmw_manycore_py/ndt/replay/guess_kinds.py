@@ -12,7 +12,13 @@ from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay import motion, prediction
-from rmw_manycore_py.ndt.replay.guess_source import Approach, Guesses, GuessSource, StackInputs
+from rmw_manycore_py.ndt.replay.guess_source import (
+    ANYWHERE,
+    Approach,
+    Guesses,
+    GuessSource,
+    StackInputs,
+)
 from rmw_manycore_py.process.progress import tracked
 
 FIRST_OFF_M, FIRST_OFF_RAD = 0.3, 0.05  # error of an initial pose set in RViz
@@ -20,6 +26,7 @@ MADE_OF = {
     "odometry": "closed loop: last result and {motion}; a rough first pose",
     "velocity": "closed loop: EKF of the results alone; a rough first pose",
     "perturbed": "open loop: the REFERENCE pose, {offset:g} m and {turn:g} degrees off",
+    "lost": "closed loop: EKF on the platform; no first pose, and speed by {motion}",
     "stack": "closed loop: EKF on the platform; a rough first pose, and speed by {motion}",
 }
 MOTION = {
@@ -94,7 +101,15 @@ class GuessKind:
         if self.kind == "odometry":
             odometry = prediction.Odometry(first_pose, drifted)
             return Guesses(first_pose, odometry, _lead_in(first_pose, drifted, periods_s))
+        if self.kind == "lost":
+            return StackInputs(_upright(drive.poses), drifted, periods_s, ANYWHERE)
         return StackInputs(first_pose, drifted, periods_s)
+
+
+def _upright(T: Matrix) -> Matrix:
+    """Return the middle of poses (S, 4, 4), with the first one's roll and pitch: gravity."""
+    roll, pitch, _ = poses.to_rpy(T[0])
+    return poses.from_xyz_rpy(T[:, :3, 3].mean(axis=0), (roll, pitch, 0.0))
 
 
 def _lead_in(T: Matrix, motions: Sequence[Matrix], periods_s: Matrix) -> Approach | None:

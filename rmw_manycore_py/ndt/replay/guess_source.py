@@ -22,6 +22,7 @@ MAP_FRAME = "map"
 # a busy host; a new one restarts it.
 FIRST_POSE_PERIOD_S = 20.0
 ROUGH = np.diag([0.25, 0.25, 0.01, 0.0001, 0.0001, 0.1])  # m^2, rad^2
+ANYWHERE = np.diag([1e6, 1e6, 0.01, 0.0001, 0.0001, 10.0])  # the stack searches the map
 LEAD_IN_S = (0.5, 0.4, 0.3, 0.2, 0.1)  # before the first scan; a matcher looks back 0.4 s
 SPEED_VARIANCE, TURN_VARIANCE = 0.04, 0.01  # (m/s)^2, (rad/s)^2
 
@@ -116,8 +117,15 @@ class Guesses:
 class StackInputs:
     """An initial pose and the speed, for a stack on the platform that makes its own guesses."""
 
-    def __init__(self, first_pose: Matrix, motions: Sequence[Matrix], periods_s: Matrix) -> None:
+    def __init__(
+        self,
+        first_pose: Matrix,
+        motions: Sequence[Matrix],
+        periods_s: Matrix,
+        covariance: Matrix = ROUGH,
+    ) -> None:
         self._first_pose = first_pose
+        self._covariance = covariance
         self._motions = motions
         self._periods_s = periods_s
         self._next_first_s = 0.0
@@ -130,11 +138,12 @@ class StackInputs:
         )
 
     def send_first(self, stamp_ns: int) -> None:
-        """Send a rough initial pose periodically, and zero speed."""
+        """Send the initial pose periodically, and zero speed."""
         self._publish_twist(stamp_ns, 0.0, 0.0)
         if time.monotonic() >= self._next_first_s and self._initial.get_subscription_count():
             self._next_first_s = time.monotonic() + FIRST_POSE_PERIOD_S
-            message = pose_with_covariance(self._first_pose, ROUGH, stamp_of(stamp_ns), MAP_FRAME)
+            first, stamp = self._first_pose, stamp_of(stamp_ns)
+            message = pose_with_covariance(first, self._covariance, stamp, MAP_FRAME)
             self._initial.publish(message)
 
     def lead_in(self, stamp_ns: int) -> None:

@@ -62,20 +62,22 @@ def _nearest_hits(street: Street, origin: Matrix, rays: Matrix, range_m: float) 
     """Return the distance (R,) along each ray to the nearest surface; infinity without a hit."""
     nearest = _ground(origin, rays)
     rays_by_axis = np.ascontiguousarray(rays.T)
-    near_box = _is_near(origin, street.lower[:, 0], street.upper[:, 0], range_m)
+    near_box = _is_near(origin, street.lower, street.upper, range_m)
     for lower, upper in zip(street.lower[near_box], street.upper[near_box], strict=True):
         np.minimum(nearest, _box(origin, rays_by_axis, lower, upper), out=nearest)
-    near_upright = _is_near(origin, street.centres[:, 0], street.centres[:, 0], range_m)
+    near_upright = _is_near(origin, street.centres, street.centres, range_m)
     for index in np.flatnonzero(near_upright):
         centre, radius, height = street.centres[index], street.radii[index], street.heights[index]
         np.minimum(nearest, _cylinder(origin, rays, centre, radius, height), out=nearest)
     return nearest
 
 
-def _is_near(
-    origin: Matrix, lower_x: Matrix, upper_x: Matrix, range_m: float
-) -> npt.NDArray[np.bool_]:
-    near: npt.NDArray[np.bool_] = (upper_x > origin[0] - range_m) & (lower_x < origin[0] + range_m)
+def _is_near(origin: Matrix, lower: Matrix, upper: Matrix, range_m: float) -> npt.NDArray[np.bool_]:
+    """Return which boxes of corners (B, 2 or 3) are in range, by x and y."""
+    at = origin[:2]
+    near: npt.NDArray[np.bool_] = np.all(
+        (upper[:, :2] > at - range_m) & (lower[:, :2] < at + range_m), axis=1
+    )
     return near
 
 

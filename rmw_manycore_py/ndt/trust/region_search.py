@@ -13,7 +13,6 @@ from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 from rmw_manycore_py.ndt.trust.search import Found, Region, search
 from rmw_manycore_py.process.helper_process import HelperProcess, leave_real_time
 
-SKETCH_ITERATIONS = 15
 NICENESS = 5
 
 
@@ -73,22 +72,6 @@ def search_in_map(
 ) -> Found:
     """Search in the map of another process."""
     only_pose = replace(options, pose_covariance="fixed")
-    voxel_map = VoxelMap.attach(shared_paths, only_pose, own_score)
     matcher = SerialMatcher(only_pose)
-    matcher.set_map(voxel_map)
-    return search(sketcher_of(voxel_map, only_pose), matcher, scan, region)
-
-
-def sketcher_of(voxel_map: VoxelMap, options: MatcherOptions) -> SerialMatcher:
-    """Return a matcher for the coarsest level of a first look only."""
-    factor = options.coarse_levels[0] if options.coarse_levels else 1.0
-    coarse = replace(
-        options,
-        voxel_size_m=factor * options.voxel_size_m,
-        coarse_levels=(),
-        max_iterations=SKETCH_ITERATIONS,
-        trans_epsilon=min(0.1, options.step_size),
-    )
-    sketcher = SerialMatcher(coarse)
-    sketcher.set_map(VoxelMap([voxel_map.levels[voxel_map.first]], coarse, 0.0))
-    return sketcher
+    matcher.set_map(VoxelMap.attach(shared_paths, only_pose, own_score))
+    return search(matcher, scan, region)

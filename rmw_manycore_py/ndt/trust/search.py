@@ -2,28 +2,34 @@
 """Searches a region for places where a scan fits, and checks whether the best one is unique.
 
 ```
- grid of places and directions ─► thinned scan, to the coarse level alone ─► the best dozens
+ places of a metre and a degree ─► upright scan, by branch and bound ─► the best dozen
    ─► whole scan, to all levels ─► places that differ, best first ─► margin over the second
 ```
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from rmw_manycore_py.native import _ndt
+from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Pose, ScanPoints
 from rmw_manycore_py.ndt.matching.alignment import Alignment
 from rmw_manycore_py.ndt.matching.matcher import Matcher
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
+from rmw_manycore_py.ndt.trust.sketch import Sketch
 
-STEP_M = 3.0  # grid spacing; levels of 4 m and 2 m converge from half its diagonal
-TURN_RAD = np.radians(30.0)
-SKETCH_POINTS = 600
-FOLLOWED = 16  # grid results that are refined with the whole scan
+YAWS = 360
+KEPT_PERMILLE = 850  # fewest points of a place that is aligned, relative to the best one
+FOLLOWED = 16  # places that are aligned with the whole scan
+SLICE_S = 0.2  # of a search, after which scans may be matched
+AROUND_YAW_RAD = np.radians(45.0)  # of a region without any_yaw
+TILT_RAD = np.radians(15.0)  # of a result, against the gravity that is known
+BETWEEN_M = 60.0  # radius of a region of any yaw that is neither small nor large
 SAME_M, SAME_RAD = 1.0, np.radians(10.0)  # closer results count as one place
 MARGIN = 0.05  # minimum lead of the best place, relative to its fit
 
@@ -35,28 +41,19 @@ MIN_LEAD, LEAD_DEVIATIONS, MIN_PLACES = 0.01, 2.5, 5
 class Region:
     """Region to search.
 
-    :param centre: T_map_base.
-    :param any_yaw: search all headings; otherwise the centre's within 30 degrees.
+    :param centre: T_map_base; its roll and pitch are those of the vehicle.
+    :param radius_m: infinity for the whole map.
+    :param any_yaw: search all headings; otherwise those within 45 degrees of the centre's.
     """
 
     centre: Pose
     radius_m: float
     any_yaw: bool
 
-    def grid(self) -> Iterator[Pose]:
-        """Yield poses such that each point of the region is within the convergence basin of one."""
-        steps = np.arange(-self.radius_m, self.radius_m + 0.5 * STEP_M, STEP_M)
-        turns = np.arange(0.0, 2 * np.pi - 1e-6, TURN_RAD) if self.any_yaw else (0.0, -0.4, 0.4)
-        for x in steps:
-            for y in steps:
-                if np.hypot(x, y) > self.radius_m:
-                    continue
-                for turn in turns:
-                    T = poses.from_xyz_rpy((x, y, 0.0))
-                    T[:3, 3] += self.centre[:3, 3]
-                    turned = poses.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, float(turn)))
-                    T[:3, :3] = turned[:3, :3] @ self.centre[:3, :3]
-                    yield T
+    def has_yaw(self, T: Pose) -> bool:
+        """Return whether a pose's heading is searched."""
+        turn_rad = poses.to_rpy(T)[2] - poses.to_rpy(self.centre)[2]
+        return self.any_yaw or abs(float(np.angle(np.exp(1j * turn_rad)))) < AROUND_YAW_RAD
 
 
 @dataclass(frozen=True)
@@ -76,14 +73,16 @@ class Found:
     def why_unclear(self, level: ScoreLevel, region: Region) -> str:
         """Return why the best place is not accepted; "" if it is.
 
-        In a small region the right place may be missing and a wrong one be the best: the best must
-        fit as well as a first pose. In a large one, the map's required score suffices.
+        In a small region the right place may be missing and a wrong one be the best, and a large
+        one has many wrong places: the best must fit as well as a first pose. In between the map's
+        required score suffices.
         """
         if not self.places:
             return "the scan fits nowhere"
         best = self.places[0]
         if not best.explained_score > level.of_explained:
-            if not region.any_yaw and not best.fit > level.of_first:
+            is_between = region.any_yaw and region.radius_m <= BETWEEN_M
+            if not is_between and not best.fit > level.of_first:
                 return f"the best fit {best.fit:.3f} is below {level.of_first:.3f}"
             score = best.nearest_voxel_likelihood
             if not score > level.of_map:
@@ -95,18 +94,65 @@ class Found:
         return ""
 
 
-def search(sketcher: Matcher, matcher: Matcher, scan: ScanPoints, region: Region) -> Found:
-    """Return where in a region a scan (N, 3) [m, base frame] fits.
+def search(matcher: Matcher, scan: ScanPoints, region: Region) -> Found:
+    """Return where in a region of the matcher's map a scan (N, 3) [m, base frame] fits."""
+    steps = search_steps(matcher, scan, region)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            found: Found = end.value
+            return found
 
-    :param sketcher: matcher with the coarsest level only.
-    :param matcher: matcher with the whole map.
+
+def search_steps(
+    matcher: Matcher,
+    scan: ScanPoints,
+    region: Region,
+    make_room: Callable[[int], None] = lambda _: None,
+) -> Generator[bool, None, Found]:
+    """Search as :func:`search` does, in steps of some 0.2 s.
+
+    :param make_room: called with the bytes that are shared with workers.
     """
-    sketch = scan[:: max(1, len(scan) // SKETCH_POINTS)]
-    tried = [sketcher.align_once(sketch, T, only_pose=True) for T in region.grid()]
-    rough = distinct([one for one in tried if not one.is_degenerate], 0.5 * SAME_M)
-    fine = [matcher.align_once(scan, one.T_map_sensor, only_pose=True) for one in rough]
-    places = distinct([one for one in fine if not one.is_degenerate], SAME_M)
+    sketch = Sketch.of(scan, region.centre)
+    rough: list[Pose] = []
+    if sketch.is_enough:
+        rough = yield from _promising(matcher, sketch, region, make_room)
+    fine: list[Alignment] = []
+    for start in rough:
+        one = matcher.align_once(scan, start, only_pose=True)
+        if not one.is_degenerate and _is_upright(one.T_map_sensor, start):
+            fine.append(one)
+        yield True
+    places = distinct(fine, SAME_M)
     return Found(tuple(matcher.explained(place, scan) for place in places[:1]) + tuple(places[1:]))
+
+
+def _promising(
+    matcher: Matcher, sketch: Sketch, region: Region, make_room: Callable[[int], None]
+) -> Generator[bool, None, list[Pose]]:
+    """Find the poses at which most points of a sketch are at something in the map, best first."""
+    x, y = region.centre[:2, 3]
+    with translate_native_errors("the search"):
+        search_map = _ndt.SearchMap(matcher.map.finest)
+        places = _ndt.PlaceSearch(
+            *(search_map, sketch.points, YAWS, KEPT_PERMILLE),
+            *((float(x), float(y)), region.radius_m),
+        )
+    make_room(search_map.size_bytes + places.size_bytes)
+    for descends in (False, True):
+        while not matcher.work_on(places, descends=descends, for_s=SLICE_S):
+            yield True
+        if not descends:
+            places.order_roots()
+    found = [sketch.pose(*place[:4]) for place in places.found(FOLLOWED)]
+    return [T for T in found if region.has_yaw(T)]
+
+
+def _is_upright(T: Pose, start: Pose) -> bool:
+    """Return whether an alignment kept roll and pitch of its start."""
+    return bool(T[2, :3] @ start[2, :3] > np.cos(TILT_RAD))
 
 
 def lead_of_best(places: Sequence[Alignment]) -> tuple[bool, bool]:

@@ -1,6 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """`ndt_align_srv`: searches for the likeliest pose around a given one, between scans.
 
+Where the given pose is very uncertain, the map is searched for the place instead (trust/search.py).
+
 The service type is that of current Autoware; `ndt_align_tier4_srv` uses that of Autoware Universe
 until 2024. A waiting service callback is a coroutine, so that the executor keeps handling guesses
 and scans, and scans are matched between two alignments of the search.
@@ -36,8 +38,11 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.map_supply import MapSupply
 from rmw_manycore_py.ndt.nodes.scan_matcher.matching_thread import MatchingThread
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters
 from rmw_manycore_py.ndt.nodes.scan_matcher.rejected import Rejected
+from rmw_manycore_py.ndt.trust.search import Region
 
 SEED = 0
+LOST_M = 10.0  # standard deviation of a pose that is no guess
+LOST_DEVIATIONS = 3.0  # searched around such a pose
 
 
 @dataclass(frozen=True)
@@ -47,6 +52,7 @@ class AlignParts:
     :param take_new_map: swaps in a map built in the background.
     :param newest_scan: returns the points (N, 3) in the base frame; None before the first scan.
     :param align: aligns points to the map from a guess (4, 4).
+    :param search: searches a region of the map for the place of points, step by step.
     :param show: publishes the evaluated poses.
     """
 
@@ -57,6 +63,7 @@ class AlignParts:
     take_new_map: Callable[[], None]
     newest_scan: Callable[[], Points | None]
     align: Callable[[Points, Matrix], Alignment]
+    search: Callable[[Points, Region], Generator[bool, None, Alignment]]
     show: Callable[[Any, Sequence[Particle]], None]
 
 
@@ -143,6 +150,10 @@ class AlignServices:
         self._report.value("is_set_sensor_points", scan is not None)
         if scan is None:
             raise Rejected("no scan received yet: check points_raw")
+        away_m = float(np.sqrt(covariance[:2, :2].diagonal().max()))
+        if away_m > LOST_M:
+            region = Region(T_map_base, LOST_DEVIATIONS * away_m, any_yaw=True)
+            return Particle(T_map_base, (yield from parts.search(scan, region)))
         tried = []
         for particle in particles(
             lambda T: parts.align(scan, T),

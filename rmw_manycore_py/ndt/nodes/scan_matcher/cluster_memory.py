@@ -29,6 +29,10 @@ class ClusterMemory:
         """Charge a scan of `points` points."""
         self._charge.hold(self._matcher.shared_bytes(points))
 
+    def make_room_for_search(self, size_bytes: int) -> None:
+        """Charge what a search shares, beside map and scan."""
+        self._charge.hold(self._matcher.shared_bytes() + size_bytes)
+
     def give_back(self) -> None:
         """Reduce the charge to what the matcher holds now."""
         self._charge.hold(self._matcher.shared_bytes())

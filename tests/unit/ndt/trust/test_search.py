@@ -10,9 +10,12 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from rmw_manycore_py.ndt import MatcherOptions, VoxelMap
+from rmw_manycore_py.bench.ndt.trust_worlds import Drive, simulated
+from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
+from rmw_manycore_py.ndt.geometry.arrays import scan_points
 from rmw_manycore_py.ndt.trust.judge import PoseJudge
 from rmw_manycore_py.ndt.trust.recovery import Recovery, Step
+from rmw_manycore_py.ndt.trust.search import Found, Region, search
 from support import wait_until
 from support.samples.ndt_world import errors, pose, scan_at, street
 
@@ -102,6 +105,52 @@ def test_where_the_street_repeats_no_place_stands_out(recovery):
     assert not searched(recovery, judge, scan, away)
     assert "equally well" in recovery.note
     assert judge.motion.last is None
+
+
+@pytest.fixture(scope="module")
+def drives() -> tuple[Drive, Drive]:
+    return simulated()["street 1"](), simulated()["street 2"]()
+
+
+@pytest.fixture(scope="module")
+def matcher(drives) -> SerialMatcher:
+    matcher = SerialMatcher(drives[0].options)
+    matcher.set_map(VoxelMap.from_points(drives[0].map_points, drives[0].options))
+    return matcher
+
+
+def lost_in(matcher: SerialMatcher, scan: np.ndarray) -> tuple[Found, str]:
+    """Search the whole map; return also why the best place is not accepted."""
+    region = Region(np.eye(4), np.inf, any_yaw=True)
+    found = search(matcher, scan_points(scan), region)
+    return found, found.why_unclear(judge_of(matcher.map).level, region)
+
+
+def test_a_scan_is_found_without_a_guess(drives, matcher):
+    for index in (10, 40, 70):
+        found, unclear = lost_in(matcher, drives[0].scan(index))
+        assert not unclear
+        distance_m, angle_deg = errors(found.places[0].T_map_sensor, drives[0].poses[index])
+        assert distance_m < 0.2
+        assert angle_deg < 1.0
+
+
+def test_a_scan_from_a_place_that_the_map_lacks_is_refused(drives, matcher):
+    for index in (10, 40, 70):
+        assert lost_in(matcher, drives[1].scan(index))[1]
+
+
+def test_a_scan_that_fits_only_when_it_is_tilted_is_refused(drives, matcher):
+    """Gravity is known: a wall is no ground."""
+    lying = drives[0].scan(40)[:, [2, 0, 1]]
+    assert lost_in(matcher, lying)[1]
+
+
+def test_a_scan_of_the_ground_alone_fits_nowhere(matcher):
+    x, y = np.meshgrid(np.arange(-20.0, 20.0), np.arange(-20.0, 20.0))
+    ground = np.stack([x.ravel(), y.ravel(), np.full(x.size, -1.9)], axis=1)
+    assert lost_in(matcher, ground)[1] == "the scan fits nowhere"
+    assert lost_in(matcher, np.full((10, 3), np.nan))[1] == "the scan fits nowhere"
 
 
 def test_a_killed_search_is_reported_and_repeated(world, recovery):
