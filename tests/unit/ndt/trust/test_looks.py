@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import pytest
 
 from rmw_manycore_py.bench.ndt import trust_variants
 from rmw_manycore_py.bench.ndt.trust_worlds import Drive, simulated
-from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
+from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Pose, scan_points
-from rmw_manycore_py.ndt.trust.judge import PoseJudge
+from rmw_manycore_py.ndt.trust.judge import PoseJudge, Verdict
 from rmw_manycore_py.ndt.trust.looks import VAIN_SCANS, Looks, ScanAt
 
 pytestmark = pytest.mark.unit
@@ -29,18 +32,33 @@ def voxel_map(drive) -> VoxelMap:
     return VoxelMap.from_points(drive.map_points, OPTIONS)
 
 
+class WatchedMatcher(SerialMatcher):
+    """Counts the alignments to the finest level alone."""
+
+    closer = 0
+
+    def align_once(self, *args: Any, is_close: bool = False, **options: Any) -> Alignment:
+        """Align as usual."""
+        self.closer += is_close
+        return super().align_once(*args, is_close=is_close, **options)
+
+
 class Counted:
-    """Looks at scans of drives in a map; counts alignments."""
+    """Looks at scans of drives in a map; counts alignments.
+
+    :ivar verdict: of the last scan.
+    """
+
+    verdict: Verdict
 
     def __init__(self, voxel_map: VoxelMap) -> None:
         self._judge = PoseJudge()
         self._judge.level.map_changed(voxel_map.own_likelihood)
         self._aligned: list[int] = []
-        matcher = SerialMatcher(OPTIONS)
-        matcher.set_map(voxel_map)
-        matcher.on_aligned = self._aligned.append
-        self.looks = Looks(matcher, self._judge)
-        self.is_believed = False
+        self.matcher = WatchedMatcher(OPTIONS)
+        self.matcher.set_map(voxel_map)
+        self.matcher.on_aligned = self._aligned.append
+        self.looks = Looks(self.matcher, self._judge)
 
     def look(
         self, drive: Drive, index: int, guess: Pose | None = None, *, is_searching: bool = False
@@ -49,13 +67,17 @@ class Counted:
         before, truth = len(self._aligned), drive.poses[index]
         stamp_s, points = float(drive.stamps_s[index]), scan_points(drive.scan(index))
         scan = ScanAt(stamp_s, points, truth if guess is None else guess, None)
-        alignment, verdict = self.looks.look(scan, is_searching=is_searching)
-        self.is_believed = verdict.is_believed
+        alignment, self.verdict = self.looks.look(scan, is_searching=is_searching)
         if self.is_believed:
             assert poses.distance_m(alignment.T_map_sensor, truth) < 0.2
             self._judge.believe(stamp_s, alignment, scan.guess)
             self.looks.hope()
         return len(self._aligned) - before
+
+    @property
+    def is_believed(self) -> bool:
+        """Return whether the last scan's pose was believed."""
+        return self.verdict.is_believed
 
 
 @pytest.fixture
@@ -89,8 +111,18 @@ def test_where_vehicles_hide_much_the_finest_level_alone_finds_the_pose(voxel_ma
         believed += [alignments] if counted.is_believed else []
     assert len(believed) >= 29
     assert 2 in believed  # from the guess, and closer
+    assert counted.matcher.closer > 0
 
 
-def test_motion_that_refuses_a_good_score_leads_to_no_closer_look(counted, drive):
+def test_motion_that_refuses_a_good_score_leads_back_to_where_it_leads(counted, drive):
     assert counted.look(drive, FIRST, drive.poses[FIRST + 20]) <= 3
     assert counted.is_believed
+
+
+def test_a_pose_that_motion_alone_refuses_is_not_looked_at_more_closely(counted, drive):
+    late_s = drive.stamps_s[FIRST + 20] - drive.stamps_s[FIRST]
+    jumped = replace(drive, stamps_s=drive.stamps_s - late_s)
+    assert counted.look(jumped, FIRST + 20) > 1
+    assert not counted.is_believed
+    assert not counted.verdict.is_score_low
+    assert counted.matcher.closer == 0
