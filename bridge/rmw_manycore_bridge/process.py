@@ -109,11 +109,13 @@ class BridgeProcess:
                 faulthandler.dump_traceback_later(_LEAVING_S)
                 for loop in self._loops:
                     loop.stop()
-            for loop in self._loops:
-                loop.close_movers()
-            for loop in reversed(self._loops):
-                loop.close()
-            faulthandler.cancel_dump_traceback_later()
+            try:
+                for loop in self._loops:
+                    loop.close_movers()
+                for loop in reversed(self._loops):
+                    loop.close()
+            finally:
+                faulthandler.cancel_dump_traceback_later()
             os.close(self._failed)
             return _report(self._loops)
 

@@ -24,6 +24,7 @@ def configured_platform(placement: Placement) -> _transport.Configurator:
     :raises ManycoreError: if the platform exists; names the processes that use it.
     """
     topology = placement.topology
+    inherited = own_scheduling()
     with translate_native_errors(), naming_users(placement.name):
         return _transport.Configurator(
             placement.name,
@@ -51,7 +52,7 @@ def configured_platform(placement: Placement) -> _transport.Configurator:
             priority_of_receive_thread={
                 cluster.id: priority
                 for cluster in topology.clusters
-                if (priority := placement.receive_priority(cluster.id, own_scheduling()))
+                if (priority := placement.receive_priority(cluster.id, inherited))
             },
             numa_node_of_cluster={
                 cluster.id: cluster.host.node

@@ -82,10 +82,15 @@ def _folded(wires: Iterable[Wire], places: Mapping[str, int]) -> tuple[Wire, ...
         clusters = frozenset((places[start], places[end]) for start, end in wire.pairs)
         alike[tuple(names), clusters].append(wire)
     return tuple(
-        one
-        for own in alike.values()
-        for one in (own if len(own) < MIN_PARALLEL else [_together(own)])
+        one for own in alike.values() for one in ([_together(own)] if _are_parallel(own) else own)
     )
+
+
+def _are_parallel(wires: Sequence[Wire]) -> bool:
+    """Return whether there are enough of them, and none goes on where another ends."""
+    starts = {start for wire in wires for start, _ in wire.pairs}
+    ends = {end for wire in wires for _, end in wire.pairs}
+    return len(wires) >= MIN_PARALLEL and not starts & ends
 
 
 def _together(wires: Sequence[Wire]) -> Wire:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from rmw_manycore_py.mapfile import ClusterMemory, Placement
 from rmw_manycore_py.platform.topology import RECEIVE_THREAD_CORE, Core
-from rmw_manycore_py.process.scheduling import Scheduling
+from rmw_manycore_py.process.scheduling import Scheduling, priority_above
 from rmw_manycore_py.ros.names import full_node_name
 
 
@@ -48,7 +48,7 @@ class Sites:
     def scheduled(self, scheduling: Scheduling) -> Sites:
         """Return the places with all nodes and receive threads scheduled like this."""
         nodes = {name: replace(one, scheduling=scheduling) for name, one in self.nodes.items()}
-        priorities = dict.fromkeys(self.receive_priorities, scheduling.priority + 1)
+        priorities = dict.fromkeys(self.receive_priorities, priority_above([scheduling]))
         return replace(self, nodes=nodes, receive_priorities=priorities)
 
     def of(self, node: str) -> Site | None:

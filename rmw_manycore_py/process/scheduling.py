@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import resource
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -28,9 +28,15 @@ class Scheduling:
 
 def own_scheduling() -> Scheduling:
     """Return what a process that this thread starts inherits."""
-    number = os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK
+    number = os.sched_getscheduler(0)  # with SCHED_RESET_ON_FORK it is none of those known
     policy = {value: name for name, value in POLICIES.items()}.get(number, "other")
-    return Scheduling(policy, os.sched_getparam(0).sched_priority)
+    return Scheduling(policy, os.sched_getparam(0).sched_priority if policy in REAL_TIME else 0)
+
+
+def priority_above(schedulings: Iterable[Scheduling]) -> int:
+    """Return the real-time priority above all of these if there is one; 0 if none has any."""
+    priorities = [one.priority for one in schedulings if one.policy in REAL_TIME]
+    return min(max(priorities) + 1, MAX_PRIORITY) if priorities else 0
 
 
 @contextmanager

@@ -40,8 +40,10 @@ void serve(const std::string & platform, uint32_t id, Daemon & daemon) {
   }
   // Before the movers start, which inherit it. The limit may be the priority of the nodes.
   const int priority = registry.header().profile.priority_of_receive_thread[id - 1];
-  if (priority > 0 && !run_in_real_time(priority)) {
-    run_in_real_time(priority - 1);
+  if (priority > 0 && !run_in_real_time(priority) && !run_in_real_time(priority - 1)) {
+    std::fprintf(
+      stderr, "[manycore_receive_thread] no right to real-time priority %d: see ulimit -r\n",
+      priority);
   }
   TraceIdentity identity;
   identity.cluster = id;

@@ -82,9 +82,9 @@ def topic_rows(look: Look) -> list[Row]:
     """Return a row per topic with its publish rates per second, largest first.
 
     `lost` counts the messages its current subscriptions have missed, `superseded` those replaced
-    by a newer one. `queued` and `capacity` are
-    those of its fullest queue. `p99_us` is None unless the platform is traced, `copies` (of a
-    message on its way to a subscription) unless messages are large; readers hold `held` bytes.
+    by a newer one. `queued` and `capacity` are those of the fullest of its queues for several
+    messages, 0 without any. `p99_us` is None unless the platform is traced, `copies` (of a message
+    on its way to a subscription) unless messages are large; readers hold `held` bytes.
     """
     rows = []
     for name, load in look.loads.topics.items():

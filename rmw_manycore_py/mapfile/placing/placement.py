@@ -13,7 +13,7 @@ from rmw_manycore_py.native.enums import Transfer, ZeroCopy
 from rmw_manycore_py.platform.smem import DEFAULT_DEPTH
 from rmw_manycore_py.platform.topology import Core, Topology, room_for_topic_dsms
 from rmw_manycore_py.platform.transfers import transfer_text
-from rmw_manycore_py.process.scheduling import MAX_PRIORITY, REAL_TIME, Scheduling
+from rmw_manycore_py.process.scheduling import Scheduling, priority_above
 from rmw_manycore_py.ros.names import file_stem
 from rmw_manycore_py.routes.outside import OutsideSettings
 from rmw_manycore_py.routes.route import DIRECTIONS, Direction, Route
@@ -278,6 +278,6 @@ class Placement:
 
         :param inherited: scheduling of nodes without their own.
         """
-        nodes = (one.scheduling or inherited for one in self.nodes if one.cluster == cluster)
-        priorities = [one.priority for one in nodes if one.policy in REAL_TIME]
-        return min(max(priorities) + 1, MAX_PRIORITY) if priorities else 0
+        return priority_above(
+            one.scheduling or inherited for one in self.nodes if one.cluster == cluster
+        )

@@ -76,7 +76,10 @@ def read_source(file: Path) -> SourceFile:
 
 def _is_program(tree: ast.Module) -> bool:
     """Return whether the module runs something when it is started."""
-    starts = (ast.If, ast.Expr, ast.Try, ast.With, ast.While, ast.For)
+    starts = (
+        *(ast.If, ast.Match, ast.Expr, ast.Assert, ast.Raise),
+        *(ast.Try, ast.With, ast.While, ast.For),
+    )
     return any(
         isinstance(node, ast.Call)
         for part in tree.body

@@ -47,7 +47,7 @@ export class Charts {
     this.plots.forEach(([, own, latest]) => (latest.textContent = this.latest(own)));
   }
 
-  // The newest values in words, for those who do not see the curves.
+  // The newest values in words, beside the curves.
   latest(names) {
     const values = names.map((name) => {
       const value = this.series.get(name).at(-1);

@@ -112,7 +112,9 @@ function connect() {
   };
 }
 
-setUpTheme(document.getElementById("theme"), () => [charts, ...details.allCharts].forEach((one) => one.redraw()));
+setUpTheme(document.getElementById("theme"), () => {
+  [charts, ...details.allCharts].forEach((one) => one.redraw());
+});
 document.addEventListener("keydown", (event) => {
   if (event.key === "Escape") {
     select(null);

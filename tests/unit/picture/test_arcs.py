@@ -144,6 +144,16 @@ def test_few_pipelines_and_those_of_other_clusters_stay_apart() -> None:
     assert len(lay_out(pipelines(4, clusters=4), []).arcs) == 4
 
 
+def test_stages_of_one_pipeline_stay_apart() -> None:
+    members = [member(n, 1, n, f"/stage{n}") for n in range(5)]
+    ends = [
+        (kind, f"/t{n}", n + offset)
+        for n in range(4)
+        for offset, kind in enumerate(("publisher", "subscription"))
+    ]
+    assert len(lay_out(graph(members, ends), []).arcs) == 4
+
+
 def test_lines_go_from_publishers_to_subscriptions_of_drawn_topics() -> None:
     ends = [("publisher", "/t", 0), ("subscription", "/t", 1)]
     ends += [("publisher", "/rosout", 0), ("subscription", "/rosout", 1)]

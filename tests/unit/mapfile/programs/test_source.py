@@ -93,6 +93,7 @@ def test_publishers_of_lifecycle_nodes_are_found(tmp_path: Path) -> None:
     [
         ("if __name__ == '__main__':\n    main()\n", True),
         ("main()\n", True),
+        ("raise SystemExit(main())\n", True),
         ("try:\n    main()\nexcept KeyboardInterrupt:\n    pass\n", True),
         ("", False),
         ("if TYPE_CHECKING:\n    import rclpy\n", False),
