@@ -17,6 +17,7 @@ import pytest
 from support import IS_MANYCORE
 from support.nodes import timed
 from support.processes.commands import manycore_command
+from support.samples.recordings import write_texts
 
 pytestmark = [
     pytest.mark.integration,
@@ -152,14 +153,11 @@ def test_a_shell_starts_a_node_again_and_again(mapfile, log_of) -> None:
     assert births == [f"{START_NS + n * NS_PER_S}" for n in range(3)]
 
 
-def test_what_lives_in_wall_time(mapfile, log_of) -> None:
-    log = log_of(mapfile("parent", "stayer"), 1.5)
+def test_who_lives_in_virtual_time_and_who_does_not(mapfile, log_of) -> None:
+    """A tool without ROS does. A child of fork() does not, and nobody when time is over."""
+    log = log_of(mapfile("parent", "stayer", "tool"), 1.5)
     assert log["parent"] == ["child True"]
     assert log["stayer"] == ["slept True"]
-
-
-def test_a_tool_without_ros_lives_in_virtual_time(mapfile, log_of) -> None:
-    log = log_of(mapfile("talker", "tool"), 1.5)
     assert log["tool"] == [f"tool {START_NS + n * NS_PER_S // 4}" for n in range(1, 5)]
 
 
@@ -187,3 +185,17 @@ def test_the_bridge_is_closed_and_mistakes_are_refused(manycore) -> None:
     assert "--join: the platform that is running lives in wall time" in text
     text = manycore("run", "talker_listener", "--instant", "--factor", "2", status=2)
     assert "--instant and --factor exclude each other" in text
+
+
+@pytest.mark.needs("mcap")
+def test_a_recording_is_played_at_its_times(mapfile, log_of, tmp_path: Path) -> None:
+    texts = [("/news", number / 100, str(number)) for number in range(200)]
+    bag = write_texts(tmp_path / "bag.mcap", texts)
+    file = mapfile("ear", "talker")
+    play = f"command: [sh, -c, {sys.prefix}/bin/manycore topic play {bag} --delay 1]"
+    file.write_text(file.read_text() + f"  player: {{{play}, cluster: 1}}\n")
+    heard = [line.split()[1:] for line in log_of(file, 4)["ear"]]
+    first_ns = int(heard[0][1])
+    after_us = [round((int(at_ns) - first_ns) / 1000) for _, at_ns, _ in heard]
+    assert [text for text, *_ in heard] == [str(number) for number in range(200)]
+    assert after_us == [10_000 * number for number in range(200)]

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import os
 import selectors
+import time
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +20,10 @@ from rmw_manycore_py.cli.topic.alarm import Alarm
 from rmw_manycore_py.cli.topic.gap_notices import gap_notices
 from rmw_manycore_py.cli.topic.play_keys import HELP, press
 from rmw_manycore_py.cli.topic.status_line import StatusLine
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.native._transport import now_ns
 from rmw_manycore_py.process.signals import signal_inbox
+from rmw_manycore_py.process.virtual_time import lives_in_virtual_time
 from rmw_manycore_py.recording.play.player import Player, Tally
 from rmw_manycore_py.recording.play.position import Position
 from rmw_manycore_py.recording.play.program import Program
@@ -48,7 +52,8 @@ def play(platform: str | None, settings: Settings, *, as_json: bool) -> None:
     """Play to a platform, or to DDS if it is None, until the end or a signal."""
     with Recording(settings.path) as recording, closing(_stage(platform)) as stage:
         print_notices([*recording.faults, *recording.remarks])
-        position = Position(settings.rate, paused=settings.paused)
+        is_virtual = lives_in_virtual_time()
+        position = _virtual(settings) if is_virtual else Position(settings.rate, settings.paused)
         player = Player(
             recording,
             stage,
@@ -59,8 +64,21 @@ def play(platform: str | None, settings: Settings, *, as_json: bool) -> None:
             clock_hz=settings.clock_hz,
         )
         print_notices(gap_notices(recording, player.start_ns, player.end_ns))
-        _run(player, position, settings, StatusLine(quiet=as_json))
+        if is_virtual:  # which only threads keep that wait for it
+            player.play()
+        else:
+            _run(player, position, settings, StatusLine(quiet=as_json))
     _report(player.tally, as_json)
+
+
+def _virtual(settings: Settings) -> Position:
+    if settings.clock_hz is not None or settings.paused:
+        raise ManycoreError(
+            "--clock and --paused: in virtual time all nodes have its clock already, and "
+            "`manycore pause` stops it",
+            EXIT_BAD_INPUT,
+        )
+    return Position(settings.rate, now_ns=now_ns, sleep=time.sleep)
 
 
 def _stage(platform: str | None) -> Stage:

@@ -43,7 +43,7 @@ _KEPT = 1_000_000
 
 
 class Player:
-    """Plays in its own thread."""
+    """Plays in a thread of its own, unless `play` is called."""
 
     def __init__(
         self,
@@ -73,6 +73,10 @@ class Player:
         self.failure: BaseException | None = None
         self._thread = threading.Thread(target=self._run, name="playing")
         self._ended: Callable[[], None] = lambda: None
+
+    def play(self) -> None:
+        """Play in this thread."""
+        self._play_all()
 
     def start(self, ended: Callable[[], None]) -> None:
         """Start playing; `ended` is called at the end."""

@@ -17,9 +17,20 @@ class Position:
     """Time in the recording. Thread-safe."""
 
     def __init__(
-        self, rate: float, *, paused: bool, now_ns: Callable[[], int] = time.monotonic_ns
+        self,
+        rate: float,
+        paused: bool = False,
+        *,
+        now_ns: Callable[[], int] = time.monotonic_ns,
+        sleep: Callable[[float], None] | None = None,
     ) -> None:
-        self._now_ns = now_ns
+        """Start at 0.
+
+        :param now_ns: clock.
+        :param sleep: waits for that clock, in seconds; None: the clock is the kernel's, and a pause
+            or a stop ends waits.
+        """
+        self._now_ns, self._sleep = now_ns, sleep
         self._rate, self._is_paused = rate, paused
         self._at_ns, self._since_ns = 0, now_ns()  # position, and when it was set
         self._steps = 0  # messages to play while paused
@@ -94,8 +105,10 @@ class Position:
 
     def wait_until(self, at_ns: int) -> int | None:
         """Wait for a position; return the lateness in ns, or None if stopped."""
-        with self._changed:
-            while not self._is_over:
+        while True:
+            with self._changed:
+                if self._is_over:
+                    return None
                 now_ns = self._now_ns()
                 if self._is_paused and self._steps:
                     self._steps -= 1
@@ -105,5 +118,7 @@ class Position:
                 if not self._is_paused and left_ns <= 0:
                     return int(-left_ns)
                 left_s = min(left_ns / _NS_PER_S, threading.TIMEOUT_MAX)
-                self._changed.wait(None if self._is_paused else left_s)
-            return None
+                if self._sleep is None:
+                    self._changed.wait(None if self._is_paused else left_s)
+                    continue
+            self._sleep(left_s)

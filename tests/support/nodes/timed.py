@@ -209,6 +209,14 @@ class Sink(Timed):
         print((self.get_clock().now().nanoseconds - int(heard.data)) / 1e3, flush=True)
 
 
+class Ear(Timed):
+    """Prints the news."""
+
+    def __init__(self) -> None:
+        super().__init__("ear")
+        self.hear("news")
+
+
 def _last_born() -> str:
     return Path(os.environ[BIRTHS]).read_text()
 
@@ -223,7 +231,7 @@ def wait_without_ros() -> None:
 
 CLASSES = (
     *(Talker, Echo, Server, Asker, Threads, Mortal, Killer, Victim, Parent, Stayer),
-    *(Camera, Filter, Sink),
+    *(Camera, Filter, Sink, Ear),
 )
 KINDS = {kind.__name__.lower(): kind for kind in CLASSES}
 
