@@ -66,6 +66,21 @@ inline void elapse(Step next, uint64_t subject = 0) noexcept {
   }
 }
 
+/// To be called before a wait, which is a turn's end also if it finds something ready. `poll`: it
+/// does not block.
+template<typename IsAnyReady>
+void end_turn(bool poll, const IsAnyReady & is_any_ready) {
+  const Door * const there = door();
+  if (there == nullptr) {
+    return;
+  }
+  there->elapse(Step::wait, 0);
+  const bool is_ready = is_any_ready();
+  if (poll || is_ready) {
+    there->yield(!is_ready);
+  }
+}
+
 }  // namespace manycore::virtual_time
 
 namespace manycore {

@@ -119,14 +119,14 @@ INTERPOSED int rcl_timer_call_with_info(void * timer, void * info) {
   return real(timer, info);
 }
 
-/// Threads that never wait for the timekeeper keep the wall clock: those of libraries wait in locks
-/// with timeouts of the kernel.
+/// Threads that have not come through the middleware keep the wall clock: those of libraries wait
+/// in locks with timeouts of the kernel.
 INTERPOSED int clock_gettime(clockid_t clock, timespec * time) noexcept {
   static auto * const real = next<int(clockid_t, timespec *)>("clock_gettime");
   const int result = real(clock, time);
   if (clock == CLOCK_MONOTONIC) {
     last_monotonic_ns = ns_of(*time);
-  } else if (clock == CLOCK_REALTIME && Member::has_seat()) {
+  } else if (clock == CLOCK_REALTIME && Member::is_asked_by_this_thread()) {
     *time = manycore::to_timespec(Member::find()->now_ns());
   }
   return result;

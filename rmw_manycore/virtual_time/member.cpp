@@ -10,7 +10,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <type_traits>
 #include <utility>
+
+#include "virtual_time/python_lock.hpp"
 
 namespace manycore::virtual_time {
 namespace {
@@ -20,34 +23,43 @@ constexpr int64_t poll_ns = 100'000;
 /// How soon a waiting thread notices that the timekeeper was killed.
 constexpr int64_t look_after_ns = ns_per_s;
 
-/// Frees the thread's seat at its end. What the thread waits for later, as destructors of static
-/// objects do, passes in wall time.
-struct ThreadSeat {
+/// Without a destructor, so that those of other objects may read it at the end of the thread.
+struct OfThread {
   Seat * seat = nullptr;
   Page * page = nullptr;
   bool is_left = false;
+  bool has_asked = false;  ///< for the time: it is a thread of the program, not of a library
   bool is_in_callback = false;
   int64_t last_empty_poll_ns = 0;
   int64_t computed_from_ns = 0;  ///< CPU time of the thread
+};
+static_assert(std::is_trivially_destructible_v<OfThread>);
 
-  ThreadSeat() = default;
-  ThreadSeat(const ThreadSeat &) = delete;
-  ThreadSeat & operator=(const ThreadSeat &) = delete;
-  ~ThreadSeat() {
-    is_left = true;
-    if (seat != nullptr) {
-      std::exchange(seat, nullptr)->vacate();
-      page->changes.fetch_add(1, std::memory_order_seq_cst);
-      futex_wake_one(page->changes);
+thread_local OfThread own;
+
+/// Frees the thread's seat at its end. What the thread waits for later, as destructors of static
+/// objects do, passes in wall time.
+struct Leaving {
+  Leaving() = default;
+  Leaving(const Leaving &) = delete;
+  Leaving & operator=(const Leaving &) = delete;
+  ~Leaving() {
+    own.is_left = true;
+    if (own.seat != nullptr) {
+      std::exchange(own.seat, nullptr)->vacate();
+      own.page->changes.fetch_add(1, std::memory_order_seq_cst);
+      futex_wake_one(own.page->changes);
     }
   }
+  void prepare() noexcept {}
 };
 
-thread_local ThreadSeat own;
+thread_local Leaving leaving;
 
 /// A child of fork() inherits neither the thread's seat nor its place in virtual time.
 void leave_in_child() noexcept {
   own.seat = nullptr;
+  own.has_asked = false;
   if (Member * const member = Member::find()) {
     member->leave();
   }
@@ -85,6 +97,7 @@ Member * Member::attach() noexcept {
 }
 
 int64_t Member::now_ns() const noexcept {
+  own.has_asked = true;
   const int64_t now_ns = page_.now_ns.load(std::memory_order_acquire);
   return is_over() ? now_ns + monotonic_ns() - page_.over_at_ns.load(std::memory_order_relaxed)
                    : now_ns;
@@ -99,10 +112,12 @@ void Member::join() noexcept {
   sleep_until(0);
 }
 
-bool Member::has_seat() noexcept { return own.seat != nullptr; }
+bool Member::is_asked_by_this_thread() noexcept { return own.has_asked && find()->has_joined(); }
 
 Seat * Member::seat_of_this_thread() noexcept {
   if (own.seat == nullptr && !own.is_left) {
+    leaving.prepare();
+    own.has_asked = true;
     own.seat = take_seat();
     own.page = &page_;
     own.computed_from_ns = clock_ns(CLOCK_THREAD_CPUTIME_ID);
@@ -126,6 +141,7 @@ Seat * Member::take_seat() noexcept {
     }
     return &seat;
   }
+  page_.seatless.store(getpid(), std::memory_order_relaxed);
   return nullptr;
 }
 
@@ -137,6 +153,7 @@ void Member::end_if_alone() noexcept {
 }
 
 bool Member::wait_in(Seat & seat) noexcept {
+  const PythonUnlocked unlocked;
   seat.state.store(seat_waiting, std::memory_order_seq_cst);
   page_.changes.fetch_add(1, std::memory_order_seq_cst);
   futex_wake_one(page_.changes);
@@ -179,10 +196,9 @@ bool Member::yield(bool empty) noexcept {
 
 /// Between callbacks, only what begins one takes time.
 void Member::elapse(Step next, uint64_t subject) noexcept {
+  own.has_asked = true;
   if (page_.is_modelled == 0) {
-    if (next == Step::wait || next == Step::publish) {
-      elapse_by_factor();
-    }
+    elapse_by_factor();
     return;
   }
   const bool begins = next == Step::take || next == Step::timer;
@@ -199,8 +215,9 @@ void Member::elapse(Step next, uint64_t subject) noexcept {
   }
 }
 
+/// Of threads that never wait in the middleware, as executors have them, from the first step on.
 void Member::elapse_by_factor() noexcept {
-  if (page_.factor <= 0 || own.seat == nullptr || is_over()) {
+  if (page_.factor <= 0 || is_over() || !has_joined() || seat_of_this_thread() == nullptr) {
     return;
   }
   const int64_t computed_ns = clock_ns(CLOCK_THREAD_CPUTIME_ID) - own.computed_from_ns;

@@ -23,8 +23,8 @@ public:
   /// Whether time goes on at the pace of the wall clock.
   bool is_over() const noexcept { return page_.is_over.load(std::memory_order_seq_cst) != 0; }
 
-  /// Whether the calling thread has waited for the timekeeper before.
-  static bool has_seat() noexcept;
+  /// Whether the calling thread has asked for the time, or waited, before.
+  static bool is_asked_by_this_thread() noexcept;
   bool wait(const Awaited & awaited, int64_t due_ns) noexcept;
   /// False if time stopped being virtual before `due_ns`.
   bool sleep_until(int64_t due_ns) noexcept;

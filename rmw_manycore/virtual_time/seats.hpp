@@ -42,8 +42,6 @@ struct alignas(64) Seat {
   Step next;  ///< unless `none`, the model decides when the wait is over
   uint64_t subject;
 
-  /// The order in which seats that are ready go on.
-  uint64_t key() const noexcept { return uint64_t{rank} << 32 | ordinal; }
   void vacate() noexcept {
     state.store(seat_free, std::memory_order_relaxed);
     pid.store(0, std::memory_order_release);
@@ -58,6 +56,7 @@ struct Page {
   FutexWord is_over;                ///< time runs at the pace of the wall clock from here on
   std::atomic<int64_t> over_at_ns;  ///< CLOCK_MONOTONIC
   std::atomic<uint32_t> seat_count;
+  std::atomic<int32_t> seatless;  ///< process whose thread has found no free seat; 0: none
   int32_t timekeeper;
   /// Virtual nanoseconds per nanosecond of CPU time; 0: callbacks take no time.
   double factor;

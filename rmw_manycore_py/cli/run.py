@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -33,6 +34,7 @@ from rmw_manycore_py.trace.files import SUFFIXES
         "manycore run robot.yaml --host laptop",
         "manycore run talker_listener --duration 10 --trace trace.json",
         "manycore run talker_listener --virtual --instant --duration 60",
+        "manycore run map.yaml --virtual --instant --kill planner@12.5",
         "manycore run whill --profile whill.profile.json --platform coolidge --duration 60",
         "manycore run talker_listener --json | jq 'select(.event == \"output\")'",
     ),
@@ -53,14 +55,9 @@ def command(
     joins: bool,
     nodes: tuple[str, ...],
     host: str | None,
-    virtual: bool,
-    instant: bool,
-    factor: float | None,
-    profile: Path | None,
-    platform_name: str | None,
-    seed: int | None,
     as_json: bool,
     trace: Path | None,
+    **virtual: Any,
 ) -> None:
     """Run the nodes of MAPFILE, each on its core.
 
@@ -71,7 +68,7 @@ def command(
 
     In virtual time a run may take less time than --duration. With --instant it is repeatable.
     """
-    time = virtual_time(mapfile, virtual, instant, factor, profile, platform_name, seed)
+    time = virtual_time(mapfile, **virtual)
     run, _ = prepared_run(mapfile, joins, nodes, virtual=time, host=host)
     report = _print_json if as_json else RunPrinter(run.program_names).report
     sys.exit(run.run(report, duration_s, trace=trace))

@@ -169,7 +169,7 @@ class Run:
             yield
             return
         with timekeeper(self._placement.name, self._mode.virtual) as keeper:
-            runner.live_in(keeper)
+            runner.live_in(keeper, self._mode.virtual.kills)
             yield
 
     def _traced(self, path: Path | None, report: Report) -> AbstractContextManager[Any]:

@@ -15,8 +15,6 @@ from rmw_manycore_py.errors import EXIT_FAILURE, ManycoreError
 from rmw_manycore_py.launch.events import (
     Ended,
     Event,
-    Held,
-    Notice,
     Output,
     Restarting,
     SignalEscalated,
@@ -56,6 +54,7 @@ class Runner:
         self._stopping = False
         self._silent = False
         self._is_timed = False
+        self._is_broken = False  # nodes did not live in virtual time to the end
         self._all_started: Handler | None = None
         self._end_s = float("inf")  # CLOCK_MONOTONIC, end of the run's duration
         self._timekeeper: Timekeeper | None = None
@@ -74,9 +73,11 @@ class Runner:
                 return node
         raise ManycoreError(f"no node '{name}' in this run")
 
-    def live_in(self, keeper: Timekeeper) -> None:
-        """Run the nodes in virtual time; call before they are started."""
+    def live_in(self, keeper: Timekeeper, kills: Sequence[tuple[str, float]]) -> None:
+        """Run the nodes in virtual time, `kills` as in VirtualTime; call before they start."""
         self._timekeeper = keeper
+        for name, after_s in kills:
+            keeper.kill(self._nodes.index(self.node(name)), after_s)
         for rank, node in enumerate(self._nodes):
             environment = keeper.environment(node.program.environment, rank)
             node.replace_program(replace(node.program, environment=environment))
@@ -122,7 +123,7 @@ class Runner:
                     handler: Handler = key.data
                     handler()
                 self._keep_deadlines()
-        return EXIT_FAILURE if self.failed else 0
+        return EXIT_FAILURE if self.failed or self._is_broken else 0
 
     def close(self) -> None:
         """Close the selector."""
@@ -330,16 +331,13 @@ class Runner:
     def _hear_timekeeper(self) -> None:
         assert self._timekeeper is not None
         for report in self._timekeeper.read_reports():
-            at, _, why = report.text.partition(" ")
-            if report.kind == "end":
-                self._stop("the duration is over")
-            elif report.kind == "held":
-                self.report(Held(int(at) / 1e9, why))
-            elif report.kind == "still":
-                self.report(Notice(f"time stands still at {int(at) / 1000} s: {why}"))
-            else:
+            if report.event is not None:
+                self.report(report.event)
+                continue
+            if report.kind == "ended":
                 self.unwatch(self._timekeeper)
-                self._stop("the timekeeper has ended")
+            self._is_broken |= report.kind != "end" and not self._stopping
+            self._stop(report.text)
 
     def _insist(self, now_s: float) -> None:
         """Send the next signal to each node whose grace period is over."""

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from rmw_manycore_program import own_program
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.launch.events import Held, Notice
 from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.process.parent_death import dies_with_this_process
 
@@ -37,18 +38,33 @@ class VirtualTime:
 
     :param factor: virtual seconds per second of CPU time of a callback; 0: callbacks take none.
     :param model: of the time that they take instead.
+    :param kills: nodes that are killed, each after so many virtual seconds.
     """
 
     factor: float
     model: PlatformModel | None = None
+    kills: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True)
 class TimekeeperReport:
-    """What the timekeeper reports: `end` after the duration, why time stands `still`, or `held`."""
+    """What the timekeeper reports.
+
+    :ivar kind: `end` after the duration, `still` or `held` with why, `broken` if time ended early.
+    """
 
     kind: str
     text: str
+
+    @property
+    def event(self) -> Held | Notice | None:
+        """What the user learns while the run goes on."""
+        at, _, why = self.text.partition(" ")
+        if self.kind == "held":
+            return Held(int(at) / 1e9, why)
+        if self.kind == "still":
+            return Notice(f"time stands still at {int(at) / 1000} s: {why}")
+        return None
 
 
 class Timekeeper:
@@ -79,12 +95,13 @@ class Timekeeper:
         """Yield what it has reported; `ended` if it ended, which it does only when told."""
         data = os.read(self.fileno(), 65536)
         if not data:
-            yield TimekeeperReport("ended", f"status {self._process.wait()}")
+            self._process.wait()
+            yield TimekeeperReport("ended", "the timekeeper has ended")
             return
         *lines, self._unfinished = (self._unfinished + data).split(b"\n")
         for line in lines:
             kind, _, text = line.decode(errors="replace").partition(" ")
-            yield TimekeeperReport(kind, text)
+            yield TimekeeperReport(kind, "the duration is over" if kind == "end" else text)
 
     def started(self, rank: int, pid: int, name: str) -> None:
         """Tell that a program's process exists: time stands until it has joined."""
@@ -93,6 +110,10 @@ class Timekeeper:
     def gone(self, rank: int) -> None:
         """Tell that a program has ended and is not started again."""
         self._tell(f"gone {rank}")
+
+    def kill(self, rank: int, after_s: float) -> None:
+        """Kill a program when virtual time has passed."""
+        self._tell(f"kill {rank} {round(after_s * _NS_PER_S)}")
 
     def begin(self, duration_s: float | None) -> None:
         """Tell that all programs were started; time begins, and ends after `duration_s`."""

@@ -296,6 +296,9 @@ class TopicConfiguration:
     def zero_copy(self) -> ZeroCopy:
         """How its large messages are read."""
 
+def now_ns() -> int:
+    """Return the clock of timeouts [ns]: CLOCK_MONOTONIC, or virtual time in a run that has it."""
+
 def platforms() -> list[str]:
     """Return the names of this user's platforms, dead or alive."""
 

@@ -6,14 +6,15 @@ from __future__ import annotations
 import math
 import re
 import sys
-import time
 from pathlib import Path
 
+from rmw_manycore_py.native._transport import now_ns
 from rmw_manycore_py.ros.names import MAX_NODE_NAME, MAX_TOPIC_NAME, NAME_PART
 from rmw_manycore_py.transport.errors import refusal
 
 _TOPIC = re.compile(f"(/{NAME_PART})+")
 _NAME = re.compile(NAME_PART)
+_NS_PER_S = 1_000_000_000
 
 
 def checked_topic(topic: str) -> str:
@@ -52,8 +53,8 @@ class Deadline:
             is_number = isinstance(timeout_s, (int, float)) and not isinstance(timeout_s, bool)
             if not is_number or not 0 <= timeout_s < math.inf:
                 raise refusal("timeout_s", "seconds from 0 on, or None", repr(timeout_s))
-        self._end_s = None if timeout_s is None else time.monotonic() + timeout_s
+        self._end_ns = None if timeout_s is None else now_ns() + round(timeout_s * _NS_PER_S)
 
     def left_s(self) -> float | None:
         """Return the time until then; None if it never comes."""
-        return None if self._end_s is None else max(self._end_s - time.monotonic(), 0.0)
+        return None if self._end_ns is None else max(self._end_ns - now_ns(), 0) / _NS_PER_S

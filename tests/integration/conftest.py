@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
+import json
 import sys
+from collections import defaultdict
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 from support.installs.installing import Installation, pack_wheel
 from support.nodes.bridging import Bridge
 from support.peers.programs import forked_example, forked_manycore
+from support.processes.commands import manycore_command
 
 
 @pytest.fixture(scope="session")
@@ -61,3 +65,39 @@ def view(start):
     yield program, link
     if program.is_running():
         assert program.stop() == 0, program
+
+
+@pytest.fixture
+def timed_mapfile(tmp_path: Path):
+    """Return a function that writes a mapfile of nodes of a script, on two clusters in turn."""
+
+    def write(script: ModuleType, *names: str, rules: str = "") -> Path:
+        file = tmp_path / "map.yaml"
+        lines = (
+            f"  {name}: {{command: [{sys.executable}, {script.__file__}, {name}], "
+            f"cluster: {index % 2 + 1}{rules}}}\n"
+            for index, name in enumerate(names)
+        )
+        file.write_text("platform: coolidge\nnodes:\n" + "".join(lines))
+        return file
+
+    return write
+
+
+@pytest.fixture
+def log_of(start):
+    """Return a function that runs a mapfile in virtual time; it returns what each node printed."""
+
+    def run(mapfile: Path, duration_s: float, *options: str) -> dict[str, list[str]]:
+        time = ("--virtual", *(options or ("--instant",)), "--duration", f"{duration_s}")
+        run = start(manycore_command("run", mapfile, *time, "--json"))
+        run.wait_for(r'"event": "finished"')
+        assert run.wait() == 0
+        log = defaultdict(list)
+        for line in run.output.splitlines():
+            event = json.loads(line)
+            if event["event"] == "output":
+                log[event["node"]].append(event["line"])
+        return dict(log)
+
+    return run

@@ -3,20 +3,18 @@
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
-from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from support import IS_MANYCORE
 from support.nodes import timed
-from support.processes.commands import manycore_command
 from support.samples.recordings import write_texts
 
 pytestmark = [
@@ -26,49 +24,12 @@ pytestmark = [
 
 START_NS = 10**18
 NS_PER_S = 10**9
-NODE = "  {name}: {{command: [{python}, {script}, {kind}], cluster: {cluster}{rules}}}\n"
 
 
 @pytest.fixture
-def mapfile(tmp_path: Path):
-    """Return a function that writes a mapfile of kinds of timed nodes, on two clusters."""
-
-    def write(*kinds: str, rules: str = "") -> Path:
-        file = tmp_path / "map.yaml"
-        nodes = (
-            NODE.format(
-                name=kind,
-                kind=kind,
-                python=sys.executable,
-                script=timed.__file__,
-                cluster=index % 2 + 1,
-                rules=rules,
-            )
-            for index, kind in enumerate(kinds)
-        )
-        file.write_text("platform: coolidge\nnodes:\n" + "".join(nodes))
-        return file
-
-    return write
-
-
-@pytest.fixture
-def log_of(start):
-    """Return a function that runs a mapfile in virtual time; it returns what each node printed."""
-
-    def run(mapfile: Path, duration_s: float, *options: str) -> dict[str, list[str]]:
-        time = ("--virtual", *(options or ("--instant",)), "--duration", f"{duration_s}")
-        run = start(manycore_command("run", mapfile, *time, "--json"))
-        run.wait_for(r'"event": "finished"')
-        assert run.wait() == 0
-        log = defaultdict(list)
-        for line in run.output.splitlines():
-            event = json.loads(line)
-            if event["event"] == "output":
-                log[event["node"]].append(event["line"])
-        return dict(log)
-
-    return run
+def mapfile(timed_mapfile):
+    """Return a function that writes a mapfile of kinds of timed nodes."""
+    return partial(timed_mapfile, timed)
 
 
 @contextmanager
@@ -119,8 +80,15 @@ def test_the_same_run_again_beside_load_and_on_one_cpu(mapfile, log_of) -> None:
 def test_threads_of_an_executor_hold_time_while_they_compute(mapfile, log_of) -> None:
     log = log_of(mapfile("threads", "server"), 2.1)
     assert log["threads"] == [
-        f"server {n} {START_NS + (50 + 25 * n + 2) * NS_PER_S // 100}" for n in range(1, 7)
+        f"server {n} {at_ns} {at_ns}"
+        for n in range(1, 7)
+        for at_ns in [START_NS + (50 + 25 * n + 2) * NS_PER_S // 100]
     ]
+
+
+def test_callbacks_on_threads_of_an_executor_take_time(mapfile, log_of) -> None:
+    log = log_of(mapfile("threads", "server"), 1.5, "--factor", "1")
+    assert len(log["threads"]) >= 2
 
 
 def test_a_node_is_killed_and_starts_again_at_the_same_times(mapfile, log_of) -> None:
@@ -129,6 +97,16 @@ def test_a_node_is_killed_and_starts_again_at_the_same_times(mapfile, log_of) ->
     assert logs[0] == logs[1]
     births = [line for line in logs[0]["mortal"] if line.startswith("born")]
     assert births == [f"born {START_NS + n * NS_PER_S} {START_NS + n * NS_PER_S}" for n in range(4)]
+
+
+def test_a_node_is_killed_from_outside_at_a_time(mapfile, log_of, manycore) -> None:
+    file = mapfile("talker", "victim", rules=f", respawn: true, env: {{{timed.BIRTHS}: /dev/null}}")
+    log = log_of(file, 2, "--virtual", "--instant", "--kill", "victim@1.25")
+    births = [line.split()[1] for line in log["victim"] if line.startswith("born")]
+    assert births == [f"{START_NS}", f"{START_NS + 5 * NS_PER_S // 4}"]
+    assert "no node 'nobody' in this run" in manycore(
+        "run", file, "--virtual", "--kill", "nobody@1", status=1
+    )
 
 
 def test_a_node_dies_and_starts_again_while_another_one_computes(

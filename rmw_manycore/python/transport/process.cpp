@@ -110,14 +110,16 @@ public:
   void watch_graph() { member()->waiters().watch_graph(common_word); }
   uint32_t epoch() const { return member()->waiters().common().epoch(); }
   bool wait(uint32_t seen, std::optional<double> timeout_s) {
+    // Keeps it alive: another thread may close this object.
+    const std::shared_ptr<Process> process = member();
+    process->tracer().note(TraceKind::wait_begin, nothing, 0, UINT64_MAX);
+    virtual_time::end_turn(timeout_s && *timeout_s <= 0, [&] { return epoch() != seen; });
     std::optional<int64_t> deadline_ns;
     if (timeout_s) {
       deadline_ns = qos_now_ns() + static_cast<int64_t>(*timeout_s * ns_per_s);
     }
-    // Keeps it alive: another thread may close this object.
-    const std::shared_ptr<Process> process = member();
-    process->tracer().note(TraceKind::wait_begin, nothing, 0, UINT64_MAX);
     const bool woken = sleep(*process, seen, deadline_ns);
+    virtual_time::elapse(virtual_time::Step::woken);
     process->tracer().note(TraceKind::wait_end, nothing, 0, woken ? 1 : 0);
     return woken;
   }
@@ -155,6 +157,7 @@ private:
 }  // namespace
 
 void bind_process(nb::module_ & module) {
+  module.def("now_ns", &qos_now_ns);
   nb::class_<BoundProcess> bound(module, "Process");
   bound
     .def(

@@ -12,6 +12,7 @@
 #include "platform/clock.hpp"
 #include "python/transport/bindings.hpp"
 #include "python/transport/gid.hpp"
+#include "virtual_time/door.hpp"
 
 namespace nb = nanobind;
 
@@ -81,7 +82,8 @@ uint64_t BoundLoan::publish() {
   Loan loan = std::move(*loan_);
   end();
   const nb::gil_scoped_release released;
-  return source->publisher->publish(std::move(loan), head_bytes_ + body_bytes_, realtime_ns());
+  const int64_t now_ns = publish_now_ns(source->publisher->slot());
+  return source->publisher->publish(std::move(loan), head_bytes_ + body_bytes_, now_ns);
 }
 
 void BoundLoan::give_back() {
@@ -170,6 +172,7 @@ uint64_t BoundPublisher::send(
   const Correlation & correlation) {
   const std::shared_ptr<SharedPublisher> shared = held();
   const nb::gil_scoped_release released;
+  const int64_t now_ns = publish_now_ns(shared->publisher->slot());
   size_t size = 0;
   for (const std::string_view & part : parts) {
     size += part.size();
@@ -183,7 +186,7 @@ uint64_t BoundPublisher::send(
     }
   }
   return shared->publisher->publish(
-    std::move(draft), size, source_timestamp_ns.value_or(realtime_ns()), correlation);
+    std::move(draft), size, source_timestamp_ns.value_or(now_ns), correlation);
 }
 
 void bind_publisher(nb::module_ & module) {

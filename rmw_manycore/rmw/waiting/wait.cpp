@@ -64,19 +64,6 @@ Ended sleep_until_ready(
   }
 }
 
-/// In virtual time each wait is a turn's end, also one that finds something ready.
-void let_others_go_first(const Waited & waited, bool poll) {
-  const manycore::virtual_time::Door * const door = manycore::virtual_time::door();
-  if (door == nullptr) {
-    return;
-  }
-  door->elapse(manycore::virtual_time::Step::wait, 0);
-  const bool is_any_ready = waited.any_ready();
-  if (poll || is_any_ready) {
-    door->yield(!is_any_ready);
-  }
-}
-
 }  // namespace
 }  // namespace rmw_manycore
 
@@ -105,7 +92,7 @@ rmw_ret_t rmw_wait(
       wait_timeout == nullptr ? UINT64_MAX
                               : static_cast<uint64_t>(rmw_time_total_nsec(*wait_timeout)));
     const bool poll = wait_timeout != nullptr && rmw_time_total_nsec(*wait_timeout) == 0;
-    rmw_manycore::let_others_go_first(waited, poll);
+    manycore::virtual_time::end_turn(poll, [&] { return waited.any_ready(); });
     auto ended = poll ? rmw_manycore::Ended::by_timeout : rmw_manycore::Ended::woken;
     if (!poll && !waited.any_ready()) {
       ended =

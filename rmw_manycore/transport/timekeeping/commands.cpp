@@ -22,6 +22,9 @@ Command parse(const std::string & line) {
   } else if (verb == "gone") {
     command.kind = Command::Kind::gone;
     words >> command.rank;
+  } else if (verb == "kill") {
+    command.kind = Command::Kind::kill;
+    words >> command.rank >> command.duration_ns;
   } else if (verb == "hold") {
     command.kind = Command::Kind::hold;
   } else if (verb == "resume") {

@@ -13,6 +13,7 @@ struct Command {
     start,   ///< `start RANK PID NAME`: the program's process exists; time stands until it joined
     gone,    ///< `gone RANK`: the program has ended and is not started again
     go,      ///< `go NS`: all programs were started; time ends after NS, unless that is 0
+    kill,    ///< `kill RANK NS`: the program's processes are killed when NS have passed
     hold,    ///< `hold`: time stands
     resume,  ///< `resume NS TOPIC`: it goes on, for NS (0: without end; -1: to what is due next),
              ///< or until something is published on TOPIC, which may lack

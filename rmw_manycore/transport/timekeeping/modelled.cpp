@@ -40,14 +40,14 @@ void Timekeeper::ask_model() {
   if (model_ == nullptr) {
     return;
   }
-  std::map<std::pair<uint64_t, uint32_t>, uint32_t> asking;  // processes of a program share keys
+  std::map<Key, uint32_t> asking;
   for (uint32_t i = 0; i < std::min(page_.seat_count.load(), virtual_time::seat_capacity); ++i) {
     const Seat & seat = page_.seats[i];
     const auto known = asked_.find(i);
     const bool asks =
       seat.state.load(std::memory_order_acquire) == seat_waiting && seat.next != Step::none;
     if (asks && (known == asked_.end() || known->second != seat.tid)) {
-      asking[{seat.key(), i}] = i;
+      asking[key_of(seat)] = i;
     }
   }
   for (const auto & [key, i] : asking) {

@@ -13,9 +13,7 @@ namespace manycore {
 namespace {
 
 using virtual_time::never_ns;
-using virtual_time::no_process;
 using virtual_time::seat_free;
-using virtual_time::seat_running;
 using virtual_time::seat_waiting;
 
 /// Time that a thread may run before the kernel is asked what it does.
@@ -37,7 +35,8 @@ bool has_ended(const FileDescriptor & pidfd) noexcept {
 Timekeeper::Timekeeper(Registry & registry, virtual_time::Page & page, PlatformModel * model)
 : registry_(registry), page_(page), model_(model) {}
 
-Timekeeper::Process::Process(pid_t pid) : pidfd(open_pidfd(pid)), threads(pid) {}
+Timekeeper::Process::Process(pid_t pid, uint32_t number_)
+: pidfd(open_pidfd(pid)), threads(pid), number(number_) {}
 
 Timekeeper::Process * Timekeeper::Turn::process() const {
   const auto found = program.processes.find(pid);
@@ -83,14 +82,6 @@ bool Timekeeper::step() {
   return !is_frozen_ && page_.now_ns.load() != never_ns;
 }
 
-template<typename Visit>
-void Timekeeper::for_each_seat(Visit visit) const {
-  const uint32_t count = std::min(page_.seat_count.load(), virtual_time::seat_capacity);
-  for (uint32_t i = 0; i < count; ++i) {
-    visit(page_.seats[i]);
-  }
-}
-
 void Timekeeper::take_commands() {
   for (const Command & command : commands_.take()) {
     obey(command);
@@ -116,6 +107,9 @@ void Timekeeper::obey(const Command & command) {
       has_begun_ = true;
       end_ns_ = command.duration_ns > 0 ? virtual_time::start_ns + command.duration_ns : never_ns;
       break;
+    case Command::Kind::kill:
+      kills_.emplace(virtual_time::start_ns + command.duration_ns, command.rank);
+      break;
     case Command::Kind::hold:
       hold("paused");
       break;
@@ -135,7 +129,9 @@ void Timekeeper::await_join(uint32_t rank, Program & program) {
   for_each_seat([&](Seat & seat) {
     const bool waits = seat.state.load(std::memory_order_acquire) == seat_waiting;
     const bool is_new = waits && seat.rank == rank && program.processes.count(seat.pid) == 0;
-    joining = is_new ? &seat : joining;
+    if (is_new && (joining == nullptr || key_of(seat) < key_of(*joining))) {
+      joining = &seat;
+    }
   });
   if (joining != nullptr) {
     program.state = Program::State::joined;
@@ -265,50 +261,6 @@ bool Timekeeper::is_drained() {
   return true;
 }
 
-bool Timekeeper::is_ready(const Seat & seat) {
-  if (seat.next != virtual_time::Step::none) {
-    return false;
-  }
-  if (seat.due_ns <= page_.now_ns.load(std::memory_order_relaxed)) {
-    return true;
-  }
-  if (seat.process == no_process || seat.process >= registry_.processes().high_water()) {
-    return false;
-  }
-  const WakeWords & wake = registry_.processes()[seat.process].wake;
-  return wake.words[seat.word % wake_words_per_process].epoch.load() != seat.seen;
-}
-
-/// The ready seat that follows the one let go last, in the cyclic order of programs and threads: so
-/// two programs that answer each other do not keep a third one waiting.
-Timekeeper::Seat * Timekeeper::next_ready() {
-  Seat * first = nullptr;
-  Seat * following = nullptr;
-  for_each_seat([&](Seat & seat) {
-    if (seat.state.load(std::memory_order_acquire) != seat_waiting || !is_ready(seat)) {
-      return;
-    }
-    const uint64_t key = seat.key();
-    if (first == nullptr || key < first->key()) {
-      first = &seat;
-    }
-    if (key > last_ && (following == nullptr || key < following->key())) {
-      following = &seat;
-    }
-  });
-  return following != nullptr ? following : first;
-}
-
-void Timekeeper::let_go(Seat & seat) {
-  last_ = seat.key();
-  Program & program = programs_.at(seat.rank);
-  program.processes.try_emplace(seat.pid, seat.pid);
-  active_.emplace(Turn{program, seat.pid});
-  ++steps_;
-  seat.state.store(seat_running, std::memory_order_release);
-  futex_wake_one(seat.state);
-}
-
 int64_t Timekeeper::next_due_ns() const {
   int64_t next_ns = never_ns;
   for_each_seat([&](const Seat & seat) {
@@ -322,10 +274,16 @@ int64_t Timekeeper::next_due_ns() const {
 /// Nothing can happen at this time any more: on to when the next wait is due.
 void Timekeeper::advance() {
   const int64_t next_ns = next_due_ns();
-  if (model_ != nullptr && advance_model(std::min({next_ns, end_ns_, stop_ns_}))) {
+  const int64_t kill_ns = kills_.empty() ? never_ns : kills_.begin()->first;
+  if (model_ != nullptr && advance_model(std::min({next_ns, end_ns_, stop_ns_, kill_ns}))) {
     if (is_single_) {
       hold("something is due");
     }
+    return;
+  }
+  if (kill_ns <= std::min({next_ns, end_ns_, stop_ns_}) && kill_ns != never_ns) {
+    page_.now_ns.store(kill_ns, std::memory_order_release);
+    kill_due();
     return;
   }
   if (stop_ns_ < std::min(next_ns, end_ns_)) {
@@ -355,6 +313,26 @@ void Timekeeper::finish() {
 void Timekeeper::pause(uint32_t seen, int64_t ns) {
   futex_wait(page_.changes, seen, monotonic_ns() + ns);
   take_commands();
+  end_if_full();
+}
+
+/// A thread without a seat lives in wall time: the run would go on, but not be repeatable.
+void Timekeeper::end_if_full() {
+  const pid_t pid = page_.seatless.exchange(0);
+  if (pid == 0 || is_over_) {
+    return;
+  }
+  std::string name = "process " + std::to_string(pid);
+  for_each_seat([&](const Seat & seat) {
+    const auto program = programs_.find(seat.rank);
+    if (seat.pid == pid && program != programs_.end()) {
+      name = program->second.name;
+    }
+  });
+  is_over_ = true;
+  report(
+    "broken", name + " has one thread too many: " + std::to_string(virtual_time::seat_capacity) +
+                " may wait at a time");
 }
 
 void Timekeeper::report(const char * kind, const std::string & text) const {

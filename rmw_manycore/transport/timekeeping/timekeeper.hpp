@@ -1,10 +1,12 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "platform/file_descriptor.hpp"
@@ -33,10 +35,11 @@ private:
 
   /// A process that has joined.
   struct Process {
-    explicit Process(pid_t pid);
+    Process(pid_t pid, uint32_t number);
 
     FileDescriptor pidfd;
     ProcessThreads threads;
+    uint32_t number;  ///< of its program, in the order of joining
   };
 
   /// A program of the run, by its rank.
@@ -52,7 +55,12 @@ private:
     int64_t started_ns = 0;  ///< CLOCK_MONOTONIC
     FileDescriptor leader;   ///< pidfd of the process that the run started; it may be a shell
     std::map<pid_t, Process> processes;  ///< one, or those that the leader has started
+    uint32_t joined = 0;                 ///< processes ever
   };
+
+  /// The order in which seats that are ready go on: of programs, their processes, and threads.
+  /// Processes that join come after the others of their program, in the order of their ids.
+  using Key = std::tuple<uint32_t, uint32_t, pid_t, uint32_t>;
 
   /// The process that was let go last.
   struct Turn {
@@ -79,6 +87,7 @@ private:
   void note_end(pid_t pid);
   void drain();
   bool is_drained();
+  Key key_of(const Seat & seat) const;
   Seat * next_ready();
   bool is_ready(const Seat & seat);
   void let_go(Seat & seat);
@@ -87,6 +96,7 @@ private:
   int64_t next_due_ns() const;
   void advance();
   bool advance_model(int64_t until_ns);
+  void kill_due();
   void finish();
   void hold(const std::string & why);
   void resume(int64_t duration_ns, const std::string & topic);
@@ -97,8 +107,14 @@ private:
   void pause(uint32_t seen, int64_t ns);
   void report(const char * kind, const std::string & text) const;
   void report_still(const std::string & what);
+  void end_if_full();
   template<typename Visit>
-  void for_each_seat(Visit visit) const;
+  void for_each_seat(Visit visit) const {
+    const uint32_t count = std::min(page_.seat_count.load(), virtual_time::seat_capacity);
+    for (uint32_t i = 0; i < count; ++i) {
+      visit(page_.seats[i]);
+    }
+  }
 
   Registry & registry_;
   virtual_time::Page & page_;
@@ -110,9 +126,10 @@ private:
   std::map<pid_t, ProcessThreads> receive_threads_;
   std::set<std::string> reported_;
   std::optional<Turn> active_;  ///< until it has settled
-  uint64_t last_ = 0;           ///< key of the seat that was let go last
+  Key last_{};                  ///< of the seat that was let go last
   uint64_t steps_ = 0;
   int64_t end_ns_ = virtual_time::never_ns;
+  std::multimap<int64_t, uint32_t> kills_;    ///< ranks of programs, by when
   int64_t stop_ns_ = virtual_time::never_ns;  ///< time stands then, until it is resumed
   std::string stop_topic_;                    ///< or when something is published; empty: none
   uint64_t published_before_ = 0;

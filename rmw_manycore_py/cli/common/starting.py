@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -98,7 +99,14 @@ def virtual_options(command: Callable[..., Any]) -> Callable[..., Any]:
         type=click.IntRange(min=0),
         help="With --profile: seed of the random numbers, 0 by default.",
     )
-    return virtual(instant(factor(profile(platform(seed(command))))))
+    kills = click.option(
+        "--kill",
+        "kills",
+        multiple=True,
+        metavar="NODE@S",
+        help="Kill a node after S seconds of virtual time. May be repeated.",
+    )
+    return virtual(instant(factor(profile(platform(seed(kills(command)))))))
 
 
 def virtual_time(
@@ -109,8 +117,10 @@ def virtual_time(
     profile: Path | None,
     platform_name: str | None,
     seed: int | None,
+    kills: tuple[str, ...],
 ) -> VirtualTime | None:
     """Return what the options of `virtual_options` ask for."""
+    due = tuple(_kill_of(text) for text in kills)
     given = {"--instant": instant, "--factor": factor is not None, "--profile": bool(profile)}
     names = [name for name, is_given in given.items() if is_given]
     if len(names) > 1:
@@ -120,13 +130,22 @@ def virtual_time(
         simulated = platform_name or "host"
         target_named(simulated)
         load(profile)
-        return VirtualTime(0.0, PlatformModel(mapfile, profile, simulated, seed or 0))
+        return VirtualTime(0.0, PlatformModel(mapfile, profile, simulated, seed or 0), due)
     if platform_name is not None or seed is not None:
         text = "--platform and --seed need --profile; $MANYCORE_PLATFORM names the run's platform."
         raise click.UsageError(text)
     if not (virtual or names):
+        if kills:
+            raise click.UsageError("--kill needs virtual time.")
         return None
-    return VirtualTime(0.0 if instant else factor or 1.0)
+    return VirtualTime(0.0 if instant else factor or 1.0, kills=due)
+
+
+def _kill_of(text: str) -> tuple[str, float]:
+    found = re.fullmatch(r"(.+)@(\d+(?:\.\d+)?)", text)
+    if found is None:
+        raise click.UsageError(f"--kill: expected NODE@SECONDS, found '{text}'.")
+    return found[1], float(found[2])
 
 
 def _of_host(mapfile: Mapfile, host: str) -> Mapfile:

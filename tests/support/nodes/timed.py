@@ -111,7 +111,7 @@ class Threads(Timed):
 
     def _ask(self) -> None:
         answer = self._client.call(Trigger.Request())
-        print(answer.message, self.get_clock().now().nanoseconds, flush=True)
+        self.say(answer.message)
 
 
 class Mortal(Timed):
