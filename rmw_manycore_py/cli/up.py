@@ -14,6 +14,7 @@ from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.printing import echo, print_notices
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.cli.common.starting import prepared_run, starting_options
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.detached import run_in_background
 from rmw_manycore_py.launch.runs.client import Client
 from rmw_manycore_py.launch.runs.directory import RunDirectory, runs_of
@@ -46,6 +47,7 @@ def command(
     Shape, topics and bridge of a running platform cannot change: then nothing is applied.
     """
     if detached and not joins and not nodes and (running := _run_of(mapfile)):
+        _check_host(running, host)
         sys.exit(_apply(running))
     run, placement = prepared_run(mapfile, joins, nodes, detached, host=host)
     printer = RunPrinter(run.program_names)
@@ -63,6 +65,21 @@ def _run_of(mapfile: Path) -> RunDirectory | None:
     runs = runs_of(load_mapfile(mapfile).platform_name)
     path = str(mapfile.resolve())
     return next((run for run in runs if run.is_alive and run.info.get("mapfile") == path), None)
+
+
+def _check_host(run: RunDirectory, host: str | None) -> None:
+    """Raise ManycoreError if the run is of another part of its mapfile."""
+    running = run.info.get("host")
+    if running != host:
+        raise ManycoreError(
+            f"platform '{run.platform}' runs {_part(running)} of {run.info.get('mapfile')}, not "
+            f"{_part(host)}; `manycore stop --platform {run.platform}` stops it",
+            EXIT_BAD_INPUT,
+        )
+
+
+def _part(host: str | None) -> str:
+    return f"the part of host '{host}'" if host else "the whole"
 
 
 def _apply(run: RunDirectory) -> int:

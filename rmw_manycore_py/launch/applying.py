@@ -17,6 +17,7 @@ from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.programs import programs_of, write_parameters
 from rmw_manycore_py.launch.requests import Apply, Move
 from rmw_manycore_py.launch.runner import Runner
+from rmw_manycore_py.launch.runs.up_command import up_command
 
 Request = Apply | Move
 
@@ -134,9 +135,10 @@ class Applier:
 def _advice(node: str, placed: Mapped) -> str:
     """Return how to keep a node where it was moved."""
     path = placed.mapfile.path
+    command = up_command(path, placed.mapfile.host)
     line = placed.mapfile.document.line(("nodes", node, "cluster"))
     place = next(one.place for one in placed.placement.nodes if one.name == node)
     return (
-        f"{path} is unchanged, and `manycore up -d {path}` moves {node} back: to keep it, write "
+        f"{path} is unchanged, and {command} moves {node} back: to keep it, write "
         f"`cluster: {place.cluster}`, `core: {place.core}` in line {line}"
     )

@@ -18,6 +18,7 @@ from rmw_manycore_program import own_program
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, MapfileError, reported
 from rmw_manycore_py.launch.platform import check_joined, occupied_cores
 from rmw_manycore_py.launch.programs import check_scheduling
+from rmw_manycore_py.launch.runs.up_command import up_command
 from rmw_manycore_py.mapfile import (
     BridgePlacement,
     Mapfile,
@@ -110,9 +111,10 @@ class Task:
 
     def _kept(self, what: str) -> ManycoreError:
         path, name = self.runs.mapfile.path, self.runs.placement.name
+        again = up_command(path, self.runs.mapfile.host, self.joins)
         return ManycoreError(
             f"{path}: {what} has changed, which cannot be applied to a running platform; nothing "
-            f"is applied: `manycore stop --platform {name}`, then `manycore up -d {path}`",
+            f"is applied: `manycore stop --platform {name}`, then {again}",
             EXIT_BAD_INPUT,
         )
 

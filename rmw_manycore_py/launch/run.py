@@ -136,6 +136,7 @@ class Run:
             "nodes": self.program_names,
             "detached": mode.detached,
             "joins": mode.joins,
+            "host": mode.mapfile.host,
             "started": datetime.now(timezone.utc).isoformat(timespec="seconds"),
         }
         with ExitStack() as stack:

@@ -13,6 +13,7 @@ from rmw_manycore_py.launch.events import Ended, Finished, Restarting, Started, 
 from rmw_manycore_py.launch.runs.client import Client
 from rmw_manycore_py.launch.runs.directory import RunDirectory
 from rmw_manycore_py.launch.runs.lines import Message
+from rmw_manycore_py.launch.runs.up_command import up_command
 from rmw_manycore_py.platform.texts import listed
 
 # A program with a failing import exits after about 0.2 s.
@@ -42,7 +43,8 @@ def unapplied(run: RunDirectory) -> Iterator[str]:
             return
     if changes:
         what = listed(changes, _MAX_CHANGES)
-        yield f"{mapfile} differs from what runs: {what}; `manycore up -d {mapfile}` applies it"
+        command = up_command(mapfile, run.info.get("host"))
+        yield f"{mapfile} differs from what runs: {what}; {command} applies it"
 
 
 class NodeWatch:

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.runs.directory import RunDirectory, all_runs, runs_of
+from rmw_manycore_py.launch.runs.up_command import up_command
 
 
 def living_runs(platform: str) -> list[RunDirectory]:
@@ -36,8 +37,9 @@ def end_of(run: RunDirectory) -> str:
 
 def start_again(run: RunDirectory) -> str:
     """Return the command that starts the mapfile of an ended run again."""
-    join = " --join" if run.info.get("joins") else ""
-    return f"`manycore up -d {run.info.get('mapfile', 'MAPFILE')}{join}` starts it again"
+    info = run.info
+    command = up_command(info.get("mapfile", "MAPFILE"), info.get("host"), info.get("joins", False))
+    return f"{command} starts it again"
 
 
 def nodes_by_run(

@@ -113,7 +113,7 @@ class RunDirectory:
 
     @property
     def info(self) -> Mapping[str, Any]:
-        """Facts written by the supervisor at its start: pid, mapfile, nodes, detached, started."""
+        """Facts written by the supervisor at its start, as pid, mapfile, host, nodes, started."""
         try:
             info = json.loads((self.path / _INFO).read_text())
         except (OSError, ValueError, RecursionError):
