@@ -513,10 +513,13 @@ class Subscription:
     def close(self) -> None:
         """Close the subscription; later calls raise ValueError. A claim stays valid."""
 
+class Node:
+    """A further node of a process, in the graph until this object is gone."""
+
 class Process:
     """A member of a platform without ROS, with one node named after its label.
 
-    It leaves the platform once it is closed and its publishers and subscriptions are gone.
+    It leaves the platform once it is closed and its nodes, publishers and subscriptions are gone.
     """
 
     def __init__(
@@ -527,10 +530,25 @@ class Process:
         label: str = "tool",
         wait: WaitMode = "block",
     ) -> None: ...
+    def node(self, name: str, namespace: str) -> Node:
+        """Add a node."""
+
+    def nodes(self) -> list[NodeInfo]:
+        """Return the nodes of all processes."""
+
     def publisher(
-        self, topic: str, type: str, qos: Qos, role: EndpointRole = "topic", type_hash: str = ""
+        self,
+        topic: str,
+        type: str,
+        qos: Qos,
+        role: EndpointRole = "topic",
+        type_hash: str = "",
+        node: Node | None = None,
     ) -> Publisher:
-        """Return a publisher of a topic, or of a service's requests or replies (its role)."""
+        """Return a publisher of a topic, or of a service's requests or replies (its role).
+
+        :param node: whose it is, for as long as that lives; by default the process's first.
+        """
 
     def subscription(
         self, topic: str, type: str, qos: Qos, role: EndpointRole = "topic", type_hash: str = ""

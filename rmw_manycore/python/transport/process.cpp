@@ -10,6 +10,8 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "platform/error.hpp"
 #include "python/context.hpp"
@@ -71,6 +73,22 @@ void check_joined_there(const Process & process, const Placement & asked) {
                                    " already: join it there, or from another process");
 }
 
+/// A further node of the process, until it is destroyed.
+class BoundNode {
+public:
+  BoundNode(std::shared_ptr<Process> process, const std::string & name, const std::string & ns)
+  : process_(std::move(process)), handle_(process_->add_node(name, ns, "/")) {}
+  ~BoundNode() { process_->remove_node(handle_); }
+  BoundNode(const BoundNode &) = delete;
+  BoundNode & operator=(const BoundNode &) = delete;
+
+  uint32_t handle() const noexcept { return handle_; }
+
+private:
+  std::shared_ptr<Process> process_;
+  uint32_t handle_;
+};
+
 /// A member process with one node, named by its label.
 class BoundProcess {
 public:
@@ -88,16 +106,24 @@ public:
     node_ = process_->add_node(label, "/", "/");
   }
 
+  std::unique_ptr<BoundNode> node(const std::string & name, const std::string & ns) const {
+    return std::make_unique<BoundNode>(member(), name, ns);
+  }
   std::unique_ptr<BoundPublisher> publisher(
     const std::string & topic, const std::string & type, const Qos & qos, const std::string & role,
-    const std::string & type_hash) const {
-    return std::make_unique<BoundPublisher>(member(), spec(topic, type, qos, role, type_hash));
+    const std::string & type_hash, const BoundNode * node) const {
+    EndpointSpec asked = spec(topic, type, qos, role, type_hash);
+    if (node != nullptr) {
+      asked.node = node->handle();
+    }
+    return std::make_unique<BoundPublisher>(member(), asked);
   }
   std::unique_ptr<BoundSubscription> subscription(
     const std::string & topic, const std::string & type, const Qos & qos, const std::string & role,
     const std::string & type_hash) const {
     return std::make_unique<BoundSubscription>(member(), spec(topic, type, qos, role, type_hash));
   }
+  std::vector<NodeInfo> nodes() const { return member()->graph().nodes(); }
   std::vector<EndpointRow> endpoints() const {
     const Graph & graph = member()->graph();
     return rows_of(graph, graph.endpoints(), HeldMemory::skipped);
@@ -158,6 +184,7 @@ private:
 
 void bind_process(nb::module_ & module) {
   module.def("now_ns", &qos_now_ns);
+  nb::class_<BoundNode>(module, "Node", nb::is_weak_referenceable());
   nb::class_<BoundProcess> bound(module, "Process");
   bound
     .def(
@@ -168,7 +195,9 @@ void bind_process(nb::module_ & module) {
       nb::arg("label") = "tool", nb::arg("wait") = word_of(WaitMode::block))
     .def(
       "publisher", &BoundProcess::publisher, nb::arg("topic"), nb::arg("type"), nb::arg("qos"),
-      nb::arg("role") = "topic", nb::arg("type_hash") = "")
+      nb::arg("role") = "topic", nb::arg("type_hash") = "", nb::arg("node") = nb::none())
+    .def("node", &BoundProcess::node, nb::arg("name"), nb::arg("namespace"))
+    .def("nodes", &BoundProcess::nodes)
     .def(
       "subscription", &BoundProcess::subscription, nb::arg("topic"), nb::arg("type"),
       nb::arg("qos"), nb::arg("role") = "topic", nb::arg("type_hash") = "")
