@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import resource
 import signal
 import sys
 
@@ -15,6 +16,8 @@ def main(arguments: list[str]) -> int:
     """Run one bridge process; started by `manycore run` and `manycore bridge`."""
     # SIGINT ends the process quietly until its own handler is set, also during `import rclpy`.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))  # a file for each name of a pattern
     shorten_time_slice()  # before any thread starts: threads inherit it
     from rmw_manycore_bridge.outside.interface import OutsideError
     from rmw_manycore_bridge.process import BridgeProcess

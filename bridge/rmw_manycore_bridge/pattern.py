@@ -20,7 +20,7 @@ from rmw_manycore_py.ros.patterns import matches
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import Route
 
-MAX_TOPICS = 512  # per pattern; each costs a file and endpoints on both sides
+MAX_NAMES = 4096  # per pattern, as many as a platform has topics; each costs an open file
 
 Types = frozenset[str]
 
@@ -54,6 +54,7 @@ class Pattern(Mover):
         self._plan, self._sides, self._passed_before = plan, sides, before
         self._find, self._make = find, make
         self._members: dict[str, _Member] = {}
+        self._movers: list[Mover] = []  # of the members: looked at in every turn
         self._is_full = False
         route = sides.route
         inward = route.direction == "inward"
@@ -73,7 +74,7 @@ class Pattern(Mover):
     @property
     def due_s(self) -> float:  # type: ignore[override]
         """Earliest deadline of the topics."""
-        return min((m.due_s for m in self._movers()), default=float("inf"))
+        return min((m.due_s for m in self._movers), default=float("inf"))
 
     def reconcile(self) -> None:
         """Add new topics, remove those whose type has changed, reconcile the others."""
@@ -84,24 +85,23 @@ class Pattern(Mover):
                 self._end(name)
             if name not in self._members and self._has_room(found):
                 self._members[name] = self._begin(name, types)
-        for mover in self._movers():
+        for mover in self._movers:
             mover.try_to_reconcile()
         state = "forwarding" if any(name in found for name in self._members) else "waiting"
-        self._sides.row.set_state(state, f"{self._sides.route.kind}s: {len(found)}")
+        out = len(found.keys() - self._members.keys())
+        beyond = f", {out} beyond the {MAX_NAMES} that a pattern bridges" if out else ""
+        self._sides.row.set_state(state, f"{self._sides.route.kind}s: {len(found)}{beyond}")
 
     def expire(self, now_s: float) -> None:
         """Expire the topics that are due."""
-        for mover in self._movers():
+        for mover in self._movers:
             if mover.due_s <= now_s:
                 mover.expire(now_s)
 
     def close(self) -> None:
         """Close all topics; keep their counters."""
-        for mover in self._movers():
+        for mover in self._movers:
             mover.close()
-
-    def _movers(self) -> list[Mover]:
-        return [m.mover for m in self._members.values() if m.mover is not None]
 
     def _is_wanted(self, name: str) -> bool:
         if name in self._taken or any(matches(pattern, name) for pattern in self._before):
@@ -110,7 +110,7 @@ class Pattern(Mover):
 
     def _has_room(self, found: Mapping[str, Types]) -> bool:
         """Return whether there is room; if full, evict a topic without publishers."""
-        if len(self._members) < MAX_TOPICS:
+        if len(self._members) < MAX_NAMES:
             return True
         gone = next((name for name in self._members if name not in found), None)
         if gone is not None:
@@ -118,7 +118,7 @@ class Pattern(Mover):
             return True
         if not self._is_full:
             self._is_full = True
-            self._sides.say(f"more than {MAX_TOPICS} names match; the others are not bridged")
+            self._sides.say(f"more than {MAX_NAMES} names match; the others are not bridged")
         return False
 
     def _begin(self, name: str, types: Types) -> _Member:
@@ -130,6 +130,7 @@ class Pattern(Mover):
             return member
         try:
             member.mover = self._make(sides)
+            self._movers.append(member.mover)
         except ImportError as error:
             sides.fail(str(error))
         except Exception as error:  # one failing topic must not stop the others
@@ -139,6 +140,7 @@ class Pattern(Mover):
     def _end(self, name: str) -> None:
         member = self._members.pop(name)
         if member.mover is not None:
+            self._movers.remove(member.mover)
             member.mover.close()
         self._path(member.slot).unlink(missing_ok=True)
         if member.sides.file is not None:
