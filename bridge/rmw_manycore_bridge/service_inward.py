@@ -89,7 +89,9 @@ class InwardService(Service):
     def pump_inside(self) -> None:
         """Return replies."""
         replies = self._replies
-        while replies is not None and (claim := replies.claim()) is not None:
+        if replies is None or not replies.has_data():  # most turns are for other routes
+            return
+        while (claim := replies.claim()) is not None:
             try:
                 asked, data = self._pending.answered(claim.number), claim.data
             finally:

@@ -80,6 +80,9 @@ class OutwardService(Service):
 
     def pump_inside(self) -> None:
         """Forward requests."""
+        requests = self._requests
+        if requests is None or not requests.has_data():  # most turns are for other routes
+            return
         with self._claiming:
             for caller, data in self._claimed_requests():
                 with self._one_request(caller):

@@ -106,12 +106,16 @@ class Loop(ABC):
 
     def _expire(self) -> float | None:
         """Return the seconds until the next deadline; None if there is none."""
-        now_s = time.monotonic()
-        for mover in self.movers:
-            if mover.due_s <= now_s:
-                mover.expire(now_s)
-        due_s = min((mover.due_s for mover in self.movers), default=float("inf"))
+        now_s, due_s = time.monotonic(), self._due_s()
+        if due_s <= now_s:
+            for mover in self.movers:
+                if mover.due_s <= now_s:
+                    mover.expire(now_s)
+            due_s = self._due_s()
         return None if due_s == float("inf") else max(due_s - now_s, 0)
+
+    def _due_s(self) -> float:
+        return min((mover.due_s for mover in self.movers), default=float("inf"))
 
 
 def _ignore() -> None:
