@@ -21,7 +21,7 @@ from typing import Any
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.routes.route import Route
 
-_MAGIC = b"MCBRIDG2"
+_MAGIC = b"MCBRIDG3"
 _HEADER_BYTES = 24  # magic, process id, bytes of the routes' JSON
 # All fields have 64 bits. `latency_ns` is the sum over all messages of the time from source
 # timestamp to forwarding. `busy_ns` is CPU time spent on the topic, `load_ppm` its CPU usage in
@@ -57,7 +57,8 @@ _BUSY, _LOAD = _INDEX["busy_ns"], _INDEX["load_ppm"]
 _WINDOW, _WINDOW_BUSY = _INDEX["window_ns"], _INDEX["window_busy_ns"]
 _WINDOW_NS = 1_000_000_000
 _MAX_LATENCY_NS = 3600 * 1_000_000_000
-_GIDS = 4  # messages of earlier publishers may still be in flight
+_GIDS = 64  # messages of earlier publishers may still be in flight
+MAX_PUBLISHERS = _GIDS // 2  # of a route at the same time
 _GID_BYTES = 16
 # Publishers forwarded last, each with the sequence number of its last message.
 _SOURCES = 16
@@ -100,6 +101,7 @@ class Row:
         self._words = memory[: 8 * _WORDS].cast("Q")
         self._gid_count = memory[8 * _WORDS : 8 * _WORDS + 8].cast("Q")
         self._places: dict[bytes, int] = {}  # index by publisher gid
+        self._gids: dict[int, bytes] = {}  # of publishers that are not closed, by place
         self.last_passed: LastNumbers = {}  # by this process or a previous one
 
     def passed(self, size: int, latency_ns: int) -> None:
@@ -150,9 +152,16 @@ class Row:
 
     def add_gid(self, gid: bytes) -> None:
         """Register a publisher of this bridge before it publishes."""
-        start = 8 * _WORDS + 8 + self._gid_count[0] % _GIDS * _GID_BYTES
+        count = self._gid_count[0]
+        place = next(i % _GIDS for i in range(count, count + _GIDS) if i % _GIDS not in self._gids)
+        start = 8 * _WORDS + 8 + place * _GID_BYTES
         self._memory[start : start + _GID_BYTES] = gid
-        self._gid_count[0] += 1
+        self._gids[place] = gid
+        self._gid_count[0] = place + 1
+
+    def close_gid(self, gid: bytes) -> None:
+        """Remember a closed publisher only until its place is needed."""
+        self._gids = {place: other for place, other in self._gids.items() if other != gid}
 
     def has_gid(self, gid: bytes) -> bool:
         """Return whether a publisher belongs to this bridge."""

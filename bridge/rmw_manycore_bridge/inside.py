@@ -5,13 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Protocol
+from weakref import WeakValueDictionary
 
 from rmw_manycore_bridge.outside.loop import Loop
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native._transport import EndpointInfo
 from rmw_manycore_py.native.enums import EndpointKind, EndpointRole
+from rmw_manycore_py.ros.names import full_node_name
 from rmw_manycore_py.routes.plan import Plan
-from rmw_manycore_py.routes.route import DIRECTIONS
 
 NODE_PREFIX = "_manycore_bridge_"  # hidden node name; goes on with engine, direction and lane
 
@@ -28,11 +29,13 @@ class Inside(Loop):
 
     def __init__(self, plan: Plan, core: tuple[int, int], name: str, changed: Callable[[], None]):
         super().__init__("inside")
-        self._own = tuple(NODE_PREFIX + plan.outside.stem(way) for way in DIRECTIONS)
+        self._own_prefixes = tuple(NODE_PREFIX + stem for stem in plan.outside.stems())
         cluster, core_number = core
         self.process = _transport.Process(plan.platform, cluster, core_number, name)
         self.process.watch_graph()
         self.readers: list[InsideReader] = []
+        self._own: tuple[int, frozenset[int]] = (-1, frozenset())  # see `_own_processes`
+        self._stand_ins: WeakValueDictionary[str, _transport.Node] = WeakValueDictionary()
         self._changed = changed
         self._generation = self.process.graph_generation()
 
@@ -60,21 +63,46 @@ class Inside(Loop):
         self, role: EndpointRole, kind: EndpointKind, wanted: Callable[[str], bool]
     ) -> dict[str, frozenset[str]]:
         found: dict[str, set[str]] = {}
-        for endpoint in self.process.endpoints():
-            if self._is_of_others(endpoint, role, kind) and wanted(endpoint.topic):
+        endpoints = self.process.endpoints()
+        own = self._own_processes()
+        for endpoint in endpoints:
+            if (endpoint.role, endpoint.kind) != (role, kind) or endpoint.process in own:
+                continue
+            if wanted(endpoint.topic):
                 found.setdefault(endpoint.topic, set()).add(endpoint.type)
         return {name: frozenset(types) for name, types in found.items()}
 
     def _endpoints(self, name: str, role: EndpointRole, kind: EndpointKind) -> list[EndpointInfo]:
-        return [
-            endpoint
-            for endpoint in self.process.endpoints_of(name)
-            if self._is_of_others(endpoint, role, kind)
-        ]
+        found = self.process.endpoints_of(name)
+        own = self._own_processes()
+        return [e for e in found if (e.role, e.kind) == (role, kind) and e.process not in own]
 
-    def _is_of_others(self, endpoint: EndpointInfo, role: EndpointRole, kind: EndpointKind) -> bool:
-        is_own = endpoint.node_name.startswith(self._own)
-        return (endpoint.role, endpoint.kind) == (role, kind) and not is_own
+    def nodes(self) -> set[str]:
+        """Return the full names of nodes, except the bridge's and hidden ones."""
+        found = self.process.nodes()
+        own = self._own_processes()
+        others = (n for n in found if n.process not in own and not n.name.startswith("_"))
+        return {full_node_name(node.namespace, node.name) for node in others}
+
+    def stand_in(self, full_name: str) -> _transport.Node:
+        """Return a node that stands for one of another host, for as long as it is referred to."""
+        found = self._stand_ins.get(full_name)
+        if found is None:
+            namespace, _, name = full_name.rpartition("/")
+            found = self._stand_ins[full_name] = self.process.node(name, namespace or "/")
+        return found
+
+    def _own_processes(self) -> frozenset[int]:
+        """Return the slots of the bridge's processes; each has its own node before others.
+
+        They are kept with the generation of the graph that they are of.
+        """
+        generation, own = self.process.graph_generation(), self._own
+        if own[0] != generation:
+            nodes = self.process.nodes()
+            slots = (node.process for node in nodes if node.name.startswith(self._own_prefixes))
+            own = self._own = generation, frozenset(slots)
+        return own[1]
 
     def wake(self) -> None:
         """Interrupt the current or next wait. Thread-safe."""

@@ -56,6 +56,8 @@ class BridgeProcess:
             for domain in sorted({route.domain for route in routes})
         }
         self._loops: list[Loop] = [self._inside, *self._outsides.values()]
+        for outside in self._outsides.values():
+            outside.show_nodes(self._inside)
         self._lanes = Lanes(plan, direction, lane)
         for index, (route, row) in enumerate(zip(routes, counters.rows, strict=True)):
             outside = self._outsides[route.domain]

@@ -12,7 +12,7 @@ from rmw_manycore_bridge.inside import Inside
 from rmw_manycore_bridge.outside.interface import Outside
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.routes.plan import Plan
-from rmw_manycore_py.routes.route import DIRECTIONS, Route
+from rmw_manycore_py.routes.route import Route
 
 
 class OwnPublishers:
@@ -20,7 +20,7 @@ class OwnPublishers:
 
     def __init__(self, plan: Plan) -> None:
         self._directory = Path(_transport.platform_directory(plan.platform))
-        self._stems = [plan.outside.stem(direction) for direction in DIRECTIONS]
+        self._stems = plan.outside.stems()
         self._known: dict[bytes, bool] = {}
 
     def has(self, gid: bytes) -> bool:
@@ -32,7 +32,7 @@ class OwnPublishers:
 
     def is_noted(self, gid: bytes) -> bool:
         """Return whether a process has registered a publisher yet."""
-        paths = (path for s in self._stems for path in self._directory.glob(f"bridge-{s}-*"))
+        paths = (path for s in self._stems for path in self._directory.glob(f"bridge-{s}[-_]*"))
         files = (CounterFile.open(path) for path in paths)
         return any(row.has_gid(gid) for file in files if file for row in file.rows)
 

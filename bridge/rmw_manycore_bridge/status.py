@@ -13,7 +13,7 @@ from rmw_manycore_bridge.datagrams import receive_buffer_errors, socket_drops
 from rmw_manycore_bridge.lanes import LaneTable, name_of
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.platform.topology import HostCpu, as_host_cpu
-from rmw_manycore_py.routes.outside import engine_of
+from rmw_manycore_py.routes.outside import engine_and_peer
 
 _OF_OWNER = ("state", "latched", "latency_max_ns")
 _INTERNAL = ("latency_ns", "load_ppm", "window_ns", "window_busy_ns")
@@ -27,7 +27,7 @@ def status(platform: str) -> list[dict[str, Any]]:
     owners: dict[str, dict[str, int]] = {}
     merged: dict[_Key, dict[str, Any]] = {}
     for row in _rows(platform):
-        names = ("engine", "kind", "direction", "inside", "outside", "domain")
+        names = ("stem", "kind", "inside", "outside", "domain")
         key = tuple(row[name] for name in names)
         lane, stem = row["lane"], row.pop("stem")
         if row["kind"] == "topic":
@@ -64,9 +64,11 @@ def _rows(platform: str) -> Iterator[dict[str, Any]]:
         if counters is None:
             continue
         stem = path.name.split("-")[_STEM]
+        engine, peer = engine_and_peer(stem)
         process = {
             "stem": stem,
-            "engine": engine_of(stem),
+            "engine": engine,
+            "peer": peer,
             "process_lane": _lane_of(path),
             "pid": counters.pid,
             "alive": is_locked(path),

@@ -16,7 +16,7 @@ from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native._transport import Qos
 
-BATCH = 16  # messages of one route before the next route's turn
+BATCH, TURN_S = 16, 0.01  # of one route before the next route's turn: a slow link takes long
 LINGER_S = 1.0  # the old owner keeps its publisher until subscribers have its messages
 PAUSE_S = 0.2  # abort the hand-over if draining takes longer
 
@@ -140,7 +140,7 @@ class Topic(Mover):
             place.hold(Held(publisher, number, data, sent_ns))
         elif not place.repeats(publisher, number) and not self._drops_repeated(publisher, number):
             self._note(publisher, number)
-            self._pass_on(address, size, sent_ns)
+            self._pass_on(address, size, sent_ns, publisher, number)
 
     def _drops_repeated(self, publisher: bytes, number: int) -> bool:
         """Count a message forwarded before, e.g. by a killed process; return whether to drop it.
@@ -157,20 +157,23 @@ class Topic(Mover):
     def _pass_on_held(self, held: Held) -> None:
         address = ctypes.cast(ctypes.c_char_p(held.data), ctypes.c_void_p).value or 0
         self._note(held.publisher, held.number)
-        self._pass_on(address, len(held.data), held.source_timestamp_ns)
+        source = held.publisher, held.number
+        self._pass_on(address, len(held.data), held.source_timestamp_ns, *source)
 
     def _note(self, publisher: bytes, number: int) -> None:
         self.count_gap(publisher, number)
         self._place.passed(publisher, number)
         self._sides.row.note_last(publisher, number)
 
-    def _pass_on(self, address: int, size: int, sent_ns: int) -> None:
+    def _pass_on(
+        self, address: int, size: int, sent_ns: int, publisher: bytes, number: int
+    ) -> None:
         row = self._sides.row
         if refusal := self._limits.refusal(size):
             row.add(refusal)
             return
         try:
-            self.send(address, size, sent_ns)
+            self.send(address, size, sent_ns, publisher, number)
         except (_transport.PlatformError, RuntimeError) as error:
             if row.add("refused") == 1:
                 self._sides.say(str(error))
@@ -187,8 +190,8 @@ class Topic(Mover):
         """Create or destroy endpoints according to the graphs."""
 
     @abstractmethod
-    def send(self, address: int, size: int, sent_ns: int) -> None:
-        """Publish on the other side."""
+    def send(self, address: int, size: int, sent_ns: int, publisher: bytes, number: int) -> None:
+        """Publish a publisher's message on the other side."""
 
     @abstractmethod
     def take(self, limit: int) -> None:

@@ -4,17 +4,25 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
+from rmw_manycore_bridge.counters import MAX_PUBLISHERS
 from rmw_manycore_bridge.limits import Gaps
 from rmw_manycore_bridge.outside import types
-from rmw_manycore_bridge.outside.interface import Subscription
+from rmw_manycore_bridge.outside.interface import Endpoint, Subscription
 from rmw_manycore_bridge.place import Place
 from rmw_manycore_bridge.policies import common_offer, request_for, satisfies, unmet
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_bridge.topic import BATCH, Topic
 from rmw_manycore_py.native import _transport
-from rmw_manycore_py.native._transport import Qos
+
+
+class _Publisher(NamedTuple):
+    """Publisher on the platform; one that stands for another host's has the name of its node."""
+
+    entity: _transport.Publisher
+    node: _transport.Node | None
 
 
 class InwardTopic(Topic):
@@ -22,7 +30,7 @@ class InwardTopic(Topic):
 
     def __init__(self, sides: Sides, place: Place) -> None:
         super().__init__(sides, place)
-        self._publisher: _transport.Publisher | None = None
+        self._publishers: dict[bytes, _Publisher] = {}  # by gid outside
         self._subscription: Subscription | None = None
         self._gaps = Gaps(sides.row)
 
@@ -47,8 +55,9 @@ class InwardTopic(Topic):
         offer = common_offer(offers, route.qos)
         if self._offer is None or not satisfies(self._offer, offer):
             self.finish()
-            if not self._appear(offer):
-                return
+            self._offer = offer
+        if not self._appear(fitting):
+            return
         if listeners or route.eager or offer.durability == "transient_local":
             self._listen(max((e.qos.depth for e in listeners), default=1))
         else:
@@ -56,18 +65,34 @@ class InwardTopic(Topic):
             self._gaps = Gaps(self._sides.row)  # untaken messages are not lost
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
-    def _appear(self, offer: Qos) -> bool:
-        route = self._sides.route
+    def _appear(self, publishers: Sequence[Endpoint]) -> bool:
+        """Publish on the platform, on nodes of the same names where publishers have them."""
+        assert self._offer is not None
+        named = {one.gid: one for one in publishers[:MAX_PUBLISHERS] if one.node}
+        wanted = named or {b"": Endpoint(self._sides.route.type, self._offer)}
+        for gid in self._publishers.keys() - wanted.keys():
+            self._end(gid)
         try:
-            self._publisher = self._sides.inside.process.publisher(
-                route.inside, route.type, offer, type_hash=types.hash_of(route.type)
-            )
+            for gid in wanted.keys() - self._publishers.keys():
+                self._publishers[gid] = self._made(wanted[gid])
         except _transport.PlatformError as error:
+            self.close()
             self._sides.fail(str(error))
             return False
-        self._sides.row.add_gid(self._publisher.gid)
-        self._offer = offer
         return True
+
+    def _made(self, publisher: Endpoint) -> _Publisher:
+        route, inside = self._sides.route, self._sides.inside
+        node = inside.stand_in(publisher.node) if publisher.node else None
+        type_hash = types.hash_of(route.type)
+        entity = inside.process.publisher(
+            route.inside, route.type, publisher.qos, type_hash=type_hash, node=node
+        )
+        self._sides.row.add_gid(entity.gid)
+        return _Publisher(entity, node)
+
+    def _end(self, gid: bytes) -> None:
+        self._sides.row.close_gid(self._publishers.pop(gid).entity.gid)
 
     def _listen(self, depth: int) -> None:
         if self._subscription is not None:
@@ -100,10 +125,10 @@ class InwardTopic(Topic):
                 return
             self.arrived(taken.publisher, taken.number, taken.address, taken.size, taken.sent_ns)
 
-    def send(self, address: int, size: int, sent_ns: int) -> None:
+    def send(self, address: int, size: int, sent_ns: int, publisher: bytes, _: int) -> None:
         """Publish inside with the source timestamp of the publisher outside."""
-        assert self._publisher is not None
-        self._publisher.publish_from(address, size, sent_ns)
+        found = self._publishers.get(publisher) or next(iter(self._publishers.values()))
+        found.entity.publish_from(address, size, sent_ns)
 
     def begin_after(self, last: Mapping[bytes, int]) -> None:
         """Count gaps from the sequence numbers of the previous lane."""
@@ -133,4 +158,6 @@ class InwardTopic(Topic):
     def close(self) -> None:
         """Leave both sides."""
         self.stop_listening()
-        self._publisher = self._offer = None
+        self._offer = None
+        for gid in list(self._publishers):
+            self._end(gid)

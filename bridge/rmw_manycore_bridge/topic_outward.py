@@ -10,7 +10,7 @@ from rmw_manycore_bridge.outside.interface import Publisher
 from rmw_manycore_bridge.place import STEP_S, Place
 from rmw_manycore_bridge.policies import common_offer, request_for, satisfies, unmet
 from rmw_manycore_bridge.sides import Sides
-from rmw_manycore_bridge.topic import BATCH, Topic
+from rmw_manycore_bridge.topic import BATCH, TURN_S, Topic
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native._transport import Qos
 
@@ -45,6 +45,8 @@ class OutwardTopic(Topic):
         if self._offer is None or not satisfies(self._offer, offer):
             self.finish()
             self._appear(offer)
+        assert self._publisher is not None
+        self._publisher.show(fitting)
         if self._is_wanted(offer):
             self._listen()
         else:
@@ -74,8 +76,9 @@ class OutwardTopic(Topic):
         self._offer = offer
 
     def _listen(self) -> None:
-        if self._subscription is not None or self._offer is None:
+        if self._subscription is not None or self._offer is None or self._publisher is None:
             return
+        self._publisher.resume()
         route, request = self._sides.route, request_for(self._offer, 1)
         self._subscription = self._sides.inside.process.subscription(
             route.inside, route.type, request, type_hash=types.hash_of(route.type)
@@ -93,18 +96,19 @@ class OutwardTopic(Topic):
         if self._subscription is None or not self._subscription.has_data():
             return
         began_ns = time.thread_time_ns()
-        self.take(BATCH)
+        self.take(BATCH, TURN_S)
         self._sides.row.worked(time.thread_time_ns() - began_ns)
 
-    def take(self, limit: int) -> None:
-        """Take up to `limit` messages."""
-        subscription = self._subscription
+    def take(self, limit: int, limit_s: float = float("inf")) -> None:
+        """Take up to `limit` messages, and none after `limit_s`."""
+        subscription, end_s = self._subscription, time.monotonic() + limit_s
         if subscription is None:
             return
-        for _ in range(limit):
+        while limit > 0 and time.monotonic() < end_s:
             claim = subscription.claim()
             if claim is None:
                 break
+            limit -= 1
             try:
                 self.arrived(
                     *(claim.publisher, claim.sequence),
@@ -116,10 +120,10 @@ class OutwardTopic(Topic):
             self._sides.inside.wake()  # continue after the other routes
         self._count_lost(subscription)
 
-    def send(self, address: int, size: int, sent_ns: int) -> None:
+    def send(self, address: int, size: int, sent_ns: int, publisher: bytes, number: int) -> None:
         """Publish outside."""
         assert self._publisher is not None
-        self._publisher.publish(address, size, sent_ns)
+        self._publisher.publish(address, size, sent_ns, publisher, number)
         if self._subscription is not None:
             self._subscription.note_bridged()
 
@@ -151,5 +155,6 @@ class OutwardTopic(Topic):
         """Leave both sides."""
         self.stop_listening()
         if self._publisher is not None:
+            self._sides.row.close_gid(self._publisher.gid)
             self._publisher.close()
         self._publisher = self._offer = None

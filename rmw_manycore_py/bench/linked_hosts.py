@@ -68,7 +68,7 @@ def linked_hosts(run: Run) -> Iterator[tuple[Node, Node]]:
             others = [address for other, address in addresses.items() if other != name]
             outside = OutsideSettings("hosts", tuple(others), addresses[name], name)
             for core, direction in enumerate(DIRECTIONS, 2):
-                command = bridge_command(session, host_routes(), direction, core, outside)
+                command = bridge_command(session, host_routes(direction), direction, core, outside)
                 session.start([*host, *command], party, cpus=run.cpus)
             nodes.append(Node(session, host, party))
         yield nodes[0], nodes[1]

@@ -67,7 +67,7 @@ def bridge_program(
     """Return the program of one bridge process."""
     words = (plan.to_json(), direction, *map(str, (lane, *core)))
     return NodeProgram(
-        name=f"({plan.outside.title} {direction}{f' {lane}' if lane else ''})",
+        name=f"({plan.outside.title(direction)}{f' {lane}' if lane else ''})",
         command=own_program("rmw_manycore_bridge", *words),
         environment=outside_environment(),
         core=core,

@@ -5,15 +5,15 @@ from __future__ import annotations
 
 from typing import Literal
 
-from rmw_manycore_py.routes.route import DIRECTIONS, Route, arranged
+from rmw_manycore_py.routes.route import Direction, Route, arranged
 
 _DOMAIN = 0  # the addresses tell the hosts of one platform from others
 _KINDS: tuple[Literal["topic"], Literal["service"]] = ("topic", "service")
 _ALL, _PARTS_OF_ACTIONS = "/**", "/**/_action/*"
 
 
-def host_routes() -> tuple[Route, ...]:
-    """Return the routes of a host.
+def host_routes(direction: Direction) -> tuple[Route, ...]:
+    """Return the routes of a host, from all others or to one.
 
     As on one host, a request waits as long as its server exists.
     """
@@ -29,7 +29,6 @@ def host_routes() -> tuple[Route, ...]:
                 timeout_s=None,
                 eager=(kind, pattern) == ("topic", _PARTS_OF_ACTIONS),
             )
-            for direction in DIRECTIONS
             for kind in _KINDS
             for pattern in (_ALL, _PARTS_OF_ACTIONS)
         ),

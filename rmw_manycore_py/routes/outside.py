@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
-from rmw_manycore_py.routes.route import Direction
+from rmw_manycore_py.routes.route import DIRECTIONS, Direction
 
 # What a mapfile can name; `hosts` joins the parts of a platform that has several hosts.
 EngineName = Literal["fastdds", "zenoh"]
@@ -21,27 +21,43 @@ class OutsideSettings:
     :ivar connect: locators of zenoh routers or peers, as tcp/localhost:7447.
     :ivar listen: of `hosts`, the locator at which this host listens.
     :ivar host: of `hosts`, the name of this one.
+    :ivar peer: of `hosts`, the host that an outward process connects to.
     """
 
     engine: EngineName | LinkName = _DEFAULT
     connect: tuple[str, ...] = ()
     listen: str = ""
     host: str = ""
+    peer: str = ""
 
-    @property
-    def title(self) -> str:
-        """What its processes are called."""
-        return self.engine if self.engine == "hosts" else "bridge"
+    def title(self, direction: Direction) -> str:
+        """Return what its processes are called.
+
+        >>> OutsideSettings("hosts", peer="b").title("outward")
+        'hosts outward b'
+        """
+        name = self.engine if self.engine == "hosts" else "bridge"
+        return " ".join(filter(None, (name, direction, self.peer)))
 
     def stem(self, direction: Direction) -> str:
         """Return what the names of files and nodes of its processes have in common.
 
-        >>> OutsideSettings("zenoh").stem("inward")
-        'zenoh_inward'
+        >>> OutsideSettings("hosts", peer="b").stem("outward")
+        'hosts_outward_b'
         """
-        return direction if self.engine == _DEFAULT else f"{self.engine}_{direction}"
+        engine = "" if self.engine == _DEFAULT else self.engine
+        return "_".join(filter(None, (engine, direction, self.peer)))
+
+    def stems(self) -> list[str]:
+        """Return what the stems of all its processes begin with."""
+        return [replace(self, peer="").stem(direction) for direction in DIRECTIONS]
 
 
-def engine_of(stem: str) -> str:
-    """Return the engine of a stem."""
-    return stem.rpartition("_")[0] or _DEFAULT
+def engine_and_peer(stem: str) -> tuple[str, str]:
+    """Return the engine of a stem, and the host that it leads to, if any.
+
+    >>> engine_and_peer("hosts_outward_b")
+    ('hosts', 'b')
+    """
+    engine, _, rest = stem.rpartition("_") if stem in DIRECTIONS else stem.partition("_")
+    return engine or _DEFAULT, rest.partition("_")[2]

@@ -1,20 +1,24 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""One mapfile over two hosts, here two platforms of one machine."""
+"""One mapfile over hosts, here platforms of one machine."""
 
 from __future__ import annotations
 
+import os
 import signal
-from collections.abc import Iterator
+import socket
+from collections.abc import Callable, Iterator
 
 import pytest
 
 from support import IS_MANYCORE, wait_until
 from support.nodes.parted import HEARD, HOSTS, Parted
 from support.nodes.serving import call, count, send_goal, serve
-from support.nodes.speakers import hear, say
+from support.nodes.speakers import flood, hear, hear_gids, say, say_as, say_stamped
 from support.nodes.zenoh_peers import free_port, locator
+from support.processes.background import background_runs
 from support.processes.commands import manycore_command
 from support.processes.platforms import leftovers
+from support.processes.program import Program
 
 pytestmark = [
     pytest.mark.integration,
@@ -35,6 +39,12 @@ def platforms() -> Iterator[list[str]]:
 
 
 @pytest.fixture
+def manycore(start, platform: str) -> Iterator[Callable[..., Program]]:
+    with background_runs(start, platform) as call:
+        yield call
+
+
+@pytest.fixture
 def hosts(platforms, start, tmp_path) -> Parted:
     made = Parted(start, tmp_path, {host: locator(free_port()) for host in HOSTS})
     platforms += made.platforms.values()
@@ -42,7 +52,7 @@ def hosts(platforms, start, tmp_path) -> Parted:
 
 
 def test_topics_between_hosts(hosts) -> None:
-    runs = hosts.run_both()
+    runs = hosts.run_all()
     assert "talker" not in runs["b"].output
     assert hosts.row("a", "outward", "/chatter")["lost"] == 0
     assert hosts.row("b", "inward", "/chatter")["lost"] == 0
@@ -51,7 +61,7 @@ def test_topics_between_hosts(hosts) -> None:
 
 
 def test_what_no_host_takes_does_not_cross(hosts) -> None:
-    hosts.run_both()
+    hosts.run_all()
     hosts.node("a", say, "/untaken", {}, 0.02).wait_for("^said$")
     wait_until(lambda: hosts.row("b", "inward", "/untaken"), "the other host knows of it")
     row = hosts.row("a", "outward", "/untaken")
@@ -60,7 +70,7 @@ def test_what_no_host_takes_does_not_cross(hosts) -> None:
 
 
 def test_a_late_subscriber_gets_what_was_latched_on_another_host(hosts) -> None:
-    hosts.run_both()
+    hosts.run_all()
     hosts.node("a", say, "/map", LATCHED, None, "older", "old", "new").wait_for("^said$")
     late = hosts.node("b", hear, "/map", LATCHED)
     late.wait_for("^heard old")
@@ -68,7 +78,7 @@ def test_a_late_subscriber_gets_what_was_latched_on_another_host(hosts) -> None:
 
 
 def test_services_and_actions_between_hosts(hosts) -> None:
-    hosts.run_both()
+    hosts.run_all()
     hosts.node("b", serve, True)
     caller = hosts.node("a", call, 2)
     for expected in ("True", "False"):
@@ -81,9 +91,9 @@ def test_services_and_actions_between_hosts(hosts) -> None:
 
 
 def test_a_host_that_goes_away_and_comes_back(hosts) -> None:
-    runs = hosts.run_both()
+    runs = hosts.run_all()
     runs["a"].kill()
-    runs["b"].wait_for(r"hosts inward.* lost /manycore_host_a_outward; connecting again")
+    runs["b"].wait_for(r"hosts inward.* lost host a; connecting again")
     wait_until(lambda: hosts.row("b", "inward", "/chatter")["state"] == "waiting", "it is gone")
     runs["b"].skip_output()
     hosts.run("a")
@@ -93,3 +103,72 @@ def test_a_host_that_goes_away_and_comes_back(hosts) -> None:
 def test_a_host_that_the_mapfile_lacks(hosts, start) -> None:
     run = start(manycore_command("run", hosts.mapfile, "--host", "c"))
     run.wait_for("--host: no host 'c' in .*; it has a, b")
+
+
+def test_a_background_run_of_another_host(hosts, manycore) -> None:
+    """Its mapfile is the same, and what the commands advise is about this host."""
+    run = f"manycore up -d {hosts.mapfile} --host a"
+    manycore("up", "-d", hosts.mapfile, "--host", "a")
+    for words, part in (((), "the whole"), (("--host", "b"), "the part of host 'b'")):
+        refused = manycore("up", "-d", hosts.mapfile, *words, status=2)
+        assert f"runs the part of host 'a' of {hosts.mapfile}, not {part}" in refused.output
+    assert "runs already" in manycore("up", "-d", hosts.mapfile, "--host", "a").output
+    assert f"`{run}` moves talker back" in manycore("move", "talker", "1:5").output
+    text = hosts.mapfile.read_text()
+    hosts.mapfile.write_text(text.replace("talker: {cluster: 1,", "talker: {cluster: 1, core: 6,"))
+    assert f"`{run}` applies it" in manycore("restart", "talker").output
+    manycore("stop")
+    assert f"`{run}` starts it again" in manycore("restart", "talker", status=1).output
+
+
+def test_an_address_that_is_not_free_yet(hosts) -> None:
+    port = int(hosts.addresses["b"].rpartition(":")[2])
+    with socket.create_server(("127.0.0.1", port)):
+        runs = {host: hosts.run(host) for host in HOSTS}
+        runs["b"].wait_for("cannot listen at tcp/.*, the address of b: .*; trying again")
+    runs["b"].wait_for(HEARD)
+    assert runs["b"].stop() == 0
+
+
+def test_a_host_that_does_not_read_costs_only_its_own_messages(platforms, start, tmp_path) -> None:
+    hosts = Parted(start, tmp_path, {host: locator(free_port()) for host in (*HOSTS, "c")})
+    platforms += hosts.platforms.values()
+    hosts.run_all()
+    hearers = {host: hosts.node(host, hear, "/much", {}) for host in "bc"}
+    hosts.node("a", flood, "/much", 50_000, 400)  # 400: two seconds for the other host
+    for hearer in hearers.values():
+        hearer.wait_for("^heard x")
+    reader = hosts.row("c", "inward", "/much")["pid"]
+    os.kill(reader, signal.SIGSTOP)
+    try:
+        wait_until(lambda: hosts.row("a", "outward", "/much", peer="c")["lost"] > 100, "losses")
+        assert hosts.row("a", "outward", "/much", peer="b")["lost"] == 0
+    finally:
+        os.kill(reader, signal.SIGCONT)
+
+
+def test_nodes_and_publishers_of_other_hosts(hosts) -> None:
+    """They have their names and QoS there, and messages the gid of their publisher."""
+    hosts.run_all()
+    for name, words in (("one", {}), ("two", LATCHED)):
+        hosts.node("a", say_as, name, "/told", words).wait_for("^said$")
+    hosts.node("b", hear_gids, "/told", 2).wait_for("^heard one and two from their gids$")
+
+    def lines(*words: str) -> list[str]:
+        return [line.strip() for line in hosts.command("b", *words).splitlines()]
+
+    assert lines("node", "list") == ["/listener", "/one", "/talker", "/two"]
+    told = lines("topic", "info", "-v", "/told")
+    assert {"Node name: one", "Node name: two"} <= {*told}
+    assert told.count("Durability: TRANSIENT_LOCAL") == 1
+    assert lines("node", "info", "/talker")[0] == "/talker"
+
+
+def test_a_clock_that_differs(hosts) -> None:
+    """Messages keep the stamps of their host, which are no latency here."""
+    hosts.run_all()
+    for topic, stamp_ns in (("/behind", 10**9), ("/ahead", 4 * 10**18)):
+        hosts.node("a", say_stamped, topic, stamp_ns)
+        hosts.node("b", hear, topic, {}).wait_for(f"^heard then {stamp_ns}$")
+        row = hosts.row("b", "inward", topic)
+        assert (row["lost"], row["refused"], row["latency_max_ns"]) == (0, 0, 0)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from rclpy.duration import Duration
@@ -12,7 +13,7 @@ from rmw_manycore_bridge.fastdds.domain import Domain
 from rmw_manycore_bridge.fastdds.policies import to_rclpy
 from rmw_manycore_bridge.fastdds.rcl import RawReader, RawWriter
 from rmw_manycore_bridge.outside import types
-from rmw_manycore_py.native._transport import Qos
+from rmw_manycore_py.native._transport import EndpointInfo, Qos
 from rmw_manycore_py.routes.route import Route
 
 
@@ -87,7 +88,13 @@ class DdsPublisher:
         """What subscriptions know it by."""
         return self._writer.gid
 
-    def publish(self, address: int, size: int, _: int) -> None:
+    def show(self, _: Sequence[EndpointInfo]) -> None:
+        """Nothing: outside, the bridge is the publisher."""
+
+    def resume(self) -> None:
+        """Nothing: DDS numbers what is published."""
+
+    def publish(self, address: int, size: int, *_: object) -> None:
         """Publish; rmw sets the source timestamp to now."""
         self._writer.publish(address, size)
 

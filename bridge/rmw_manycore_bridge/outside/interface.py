@@ -4,23 +4,29 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-from rmw_manycore_bridge.outside.loop import Loop
-from rmw_manycore_py.native._transport import Qos
+from rmw_manycore_bridge.outside.loop import Loop, Mover
+from rmw_manycore_py.native._transport import EndpointInfo, Node, Qos
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import Direction, Route
 
 
 @dataclass(frozen=True)
 class Endpoint:
-    """Publisher or subscription of another node; `type` names what does not fit, if it differs."""
+    """Publisher or subscription of another node; `type` names what does not fit, if it differs.
+
+    Between hosts, the platform shows it: `node` is the full name of its node, and `gid` what its
+    messages have.
+    """
 
     type: str
     qos: Qos
+    node: str = ""
+    gid: bytes = b""
 
 
 @dataclass(frozen=True)
@@ -48,6 +54,18 @@ class Joining:
     name: str
     changed: Callable[[], None]
     is_own: Callable[[bytes], bool]
+
+
+class Platform(Protocol):
+    """Nodes of the platform, and the movers of its thread."""
+
+    movers: list[Mover]
+
+    def nodes(self) -> set[str]:
+        """Return the full names of nodes, except the bridge's and hidden ones."""
+
+    def stand_in(self, full_name: str) -> Node:
+        """Return a node that stands for one of another host, for as long as it is referred to."""
 
 
 class OutsideError(RuntimeError):
@@ -94,8 +112,17 @@ class Publisher(Protocol):
     def gid(self) -> bytes:
         """What subscriptions know it by, 16 bytes."""
 
-    def publish(self, address: int, size: int, sent_ns: int) -> None:
-        """Publish `size` bytes; the memory is free afterwards."""
+    def show(self, sources: Sequence[EndpointInfo]) -> None:
+        """Show the platform's publishers outside, if the engine can."""
+
+    def resume(self) -> None:
+        """Go on after a time without subscriptions outside."""
+
+    def publish(self, address: int, size: int, sent_ns: int, publisher: bytes, number: int) -> None:
+        """Publish `size` bytes of a platform's publisher; the memory is free afterwards.
+
+        :param number: of the message, by its publisher.
+        """
 
     def has_listeners(self) -> bool:
         """Return whether others subscribe to the topic."""
@@ -162,6 +189,9 @@ class Outside(Loop):
         :param scratch: a file that this process may write; it is removed with the platform.
         :param replaces: whether it replaces a process that received, and has ended.
         """
+
+    def show_nodes(self, platform: Platform) -> None:
+        """Show nodes of each side on the other, beside their endpoints; by default, none."""
 
     @abstractmethod
     def require_type(self, name: str) -> None:

@@ -12,6 +12,8 @@ import zenoh
 
 from rmw_manycore_bridge.zenoh.keys import Kind, Token, TokenError, graph_key, parse_token
 
+LINK_NODE = "/manycore_host_"  # the own nodes of links between hosts begin with it
+
 
 class Declared:
     """Token of one of the bridge's endpoints, until it is withdrawn."""
@@ -78,6 +80,17 @@ class Graph:
             self._met.setdefault(token.session, set()).add(token.full_node_name)
         return found
 
+    def nodes(self) -> set[str]:
+        """Return the full names of other nodes."""
+        found = list(self._tokens.values())
+        return {t.full_node_name for t in found if t.kind == "NN" and not self._is_own(t)}
+
+    def show_node(self, full_name: str) -> StandIn:
+        """Put a node into the graph until it is left."""
+        found = self._enter(full_name)
+        found.enter()
+        return found
+
     def has_any(self, kind: Kind, name: str) -> bool:
         """Return whether there is an endpoint, also of the bridge."""
         return any((t.kind, t.name) == (kind, name) for t in list(self._tokens.values()))
@@ -86,20 +99,24 @@ class Graph:
         """Return the nodes of a session that is gone, as far as routes have met with them."""
         return self._met.pop(session, set())
 
-    def declare(
+    def token(
         self, kind: Kind, full_node: str | None, name: str, type_name: str, type_hash: str, qos: str
-    ) -> Declared:
-        """Put an endpoint of the bridge into the graph, on a node of the given name if any."""
+    ) -> Token:
+        """Return the token of a new endpoint, which enters the graph with its node, if it is named.
+
+        Otherwise it is on the bridge's own node.
+        """
         node = full_node or f"/{self._node}"
-        stand_in = self._enter(node)
         namespace, _, short = node.rpartition("/")
-        token = Token(
-            *(self._domain, self._zid, stand_in.number, next(self._numbers), kind),
+        return Token(
+            *(self._domain, self._zid, self._enter(node).number, next(self._numbers), kind),
             *(namespace or "/", short, name, type_name, type_hash, qos),
         )
+
+    def declare(self, token: Token) -> Declared:
+        """Put an endpoint into the graph."""
         live = self._session.liveliness().declare_token(token.text)
-        stand_in.enter()
-        return Declared(token, live, stand_in)
+        return Declared(token, live, self.show_node(token.full_node_name))
 
     def _enter(self, full_name: str) -> StandIn:
         found = self._nodes.get(full_name)
@@ -124,10 +141,12 @@ class Graph:
             self._tokens.pop(text, None)
         else:
             try:
-                self._tokens[text] = parse_token(text)
+                token = self._tokens[text] = parse_token(text)
             except TokenError as error:
                 self.say_once(f"unknown token in the graph: {error}", text)
                 return
+            if token.full_node_name.startswith(LINK_NODE):
+                self._met.setdefault(token.session, set()).add(token.full_node_name)
         self._changed()
 
     def say_once(self, problem: str, example: str) -> None:

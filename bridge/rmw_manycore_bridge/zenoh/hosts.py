@@ -1,22 +1,27 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """The other hosts of a platform as the outside, over sessions of their own.
 
-Each host listens in its inward process, and connects from its outward process to the inward ones of
-the others: what a host publishes goes over one link to each host, and no host forwards.
+Each host listens in its inward process. It has an outward process for each other host, which
+connects to the inward one there: a slow link holds up its own process only, and no host forwards.
 """
 
 from __future__ import annotations
 
 import zenoh
 
-from rmw_manycore_bridge.outside.interface import Joining, OutsideError
-from rmw_manycore_bridge.zenoh.graph import Graph, say
+from rmw_manycore_bridge.outside.interface import Endpoint, Joining, Platform
+from rmw_manycore_bridge.zenoh.graph import LINK_NODE, Graph, say
+from rmw_manycore_bridge.zenoh.host_graph import HostPublisher, OtherNodes, OwnNodes
 from rmw_manycore_bridge.zenoh.outside import Zenoh
-from rmw_manycore_bridge.zenoh.session import open_link
+from rmw_manycore_bridge.zenoh.session import open_connecting, open_listening
+from rmw_manycore_py.native._transport import Qos
+from rmw_manycore_py.routes.route import Route
 
 
 class Hosts(Zenoh):
-    """One direction of a host's links."""
+    """The link to one host, or the links from all others."""
+
+    _is_late = False  # whether it waits, or had to wait, for its address
 
     @classmethod
     def open(cls, joining: Joining) -> Hosts:
@@ -25,16 +30,43 @@ class Hosts(Zenoh):
 
     def _open_session(self, joining: Joining) -> zenoh.Session:
         outside = joining.plan.outside
+        self._is_outward = joining.direction == "outward"
         if joining.direction == "outward":
-            return open_link(listen=[], connect=outside.connect)
+            return open_connecting(outside.connect)
         try:
-            return open_link(listen=[outside.listen], connect=[])
-        except zenoh.ZError as error:
+            return open_listening(outside.listen, waits=False)
+        except zenoh.ZError as error:  # its interface is not up, or its port in use
             text = f"cannot listen at {outside.listen}, the address of {outside.host}: {error}"
-            raise OutsideError(text) from error
+            say(f"{text}; trying again")
+            self._is_late = True
+            return open_listening(outside.listen, waits=True)
 
     def _watch(self, _: Joining, graph: Graph) -> HostWatch:
         return HostWatch(self._session, graph)
+
+    def publishers(self, route: Route, _: bool) -> list[Endpoint]:
+        """Return the publishers of a topic on other hosts, with their nodes."""
+        found = self._graph.endpoints("MP", route.outside)
+        return [Endpoint(self._type_of(t), self._qos_of(t), t.full_node_name, t.gid) for t in found]
+
+    def publish(self, route: Route, qos: Qos) -> HostPublisher:
+        """Create a publisher."""
+        token = self._token("MP", route, qos)
+        made = HostPublisher(self._graph, token, self._note_change)
+        made.declare(self._session, self._key(route), qos)
+        return made
+
+    def show_nodes(self, platform: Platform) -> None:
+        """Show this host's nodes on the others, or theirs here."""
+        if self._is_outward:
+            platform.movers.append(OwnNodes(platform, self._graph))
+        else:
+            self.movers.append(OtherNodes(platform, self._graph))
+
+    def close(self) -> None:
+        """Leave the platform's hosts."""
+        if not self._is_late:  # to close it may take 10 s; it ends with the process
+            super().close()
 
 
 class HostWatch:
@@ -49,8 +81,10 @@ class HostWatch:
         if event.kind == zenoh.SampleKind.PUT:
             say("connected to another host")
         else:
-            nodes = self._graph.forget(str(event.transport.zid)) or {"another host"}
-            say(f"lost {', '.join(sorted(nodes))}; connecting again once it is back")
+            nodes = self._graph.forget(str(event.transport.zid))
+            links = (n.removeprefix(LINK_NODE) for n in nodes if n.startswith(LINK_NODE))
+            host = next((f"host {link.rpartition('_')[0]}" for link in links), "another host")
+            say(f"lost {host}; connecting again once it is back")
 
     def close(self) -> None:
         """Listen no more."""

@@ -126,8 +126,9 @@ class Zenoh(Outside):
 
     def publish(self, route: Route, qos: Qos) -> ZenohPublisher:
         """Create a publisher."""
-        declared = self._declared("MP", route, qos)
-        made = ZenohPublisher(self._graph, declared, self._note_change)
+        token = self._token("MP", route, qos)
+        made = ZenohPublisher(self._graph, token, self._note_change)
+        made.appear()
         made.declare(self._session, self._key(route), qos)
         return made
 
@@ -148,7 +149,8 @@ class Zenoh(Outside):
 
     def turn(self, timeout_s: float | None) -> None:
         """Block until something changes, then forward what has arrived."""
-        if not any(reader.has_data() for reader in self.readers):
+        # A thread of zenoh that runs a mover may change the readers: look at a copy.
+        if not any(reader.has_data() for reader in list(self.readers)):
             self._ready.wait(timeout_s)
         self._ready.clear()
         if self._error is not None:
@@ -204,8 +206,11 @@ class Zenoh(Outside):
         self._ready.set()
 
     def _declared(self, kind: Kind, route: Route, qos: Qos) -> Declared:
+        return self._graph.declare(self._token(kind, route, qos))
+
+    def _token(self, kind: Kind, route: Route, qos: Qos) -> Token:
         type_hash = types.hash_of(route.type)
-        return self._graph.declare(
+        return self._graph.token(
             *(kind, route.node, route.outside, route.type, type_hash, qos_text.encode(qos))
         )
 

@@ -7,7 +7,7 @@ import ctypes
 import itertools
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from threading import Event
 from typing import Any, NamedTuple
@@ -20,7 +20,8 @@ from zenoh.handlers import Callback
 from rmw_manycore_bridge.outside.interface import OutsideError
 from rmw_manycore_bridge.zenoh.attachment import pack, unpack
 from rmw_manycore_bridge.zenoh.graph import Declared, Graph, say
-from rmw_manycore_py.native._transport import Qos
+from rmw_manycore_bridge.zenoh.keys import Token
+from rmw_manycore_py.native._transport import EndpointInfo, Qos
 
 _SCOUT_DEPTH = 10
 _MAX_HOLD_UP_S, _STEP_S = 1.0, 0.05  # far longer than a turn of the bridge takes
@@ -192,9 +193,10 @@ class ZenohSubscription:
 class ZenohPublisher:
     """Publisher that waits for room on a slow link; what it misses meanwhile, the source counts."""
 
-    def __init__(self, graph: Graph, declared: Declared, changed: Callable[[], None]) -> None:
-        self._graph, self._declared, self._changed = graph, declared, changed
-        self.gid = declared.token.gid
+    def __init__(self, graph: Graph, token: Token, changed: Callable[[], None]) -> None:
+        self._graph, self._token, self._changed = graph, token, changed
+        self.gid = token.gid
+        self._declared: Declared | None = None
         self._numbers = itertools.count(1)
         self._entity: Any = None
         self._listener: Any = None
@@ -226,17 +228,32 @@ class ZenohPublisher:
             publisher_detection=True,
         )
 
-    def publish(self, address: int, size: int, sent_ns: int) -> None:
+    def appear(self) -> None:
+        """Put it into the graph."""
+        self._declared = self._graph.declare(self._token)
+
+    def show(self, _: Sequence[EndpointInfo]) -> None:
+        """Nothing: in the domain, the bridge is the publisher."""
+
+    def resume(self) -> None:
+        """Nothing: what nobody wanted is not missed."""
+
+    def publish(self, address: int, size: int, sent_ns: int, publisher: bytes, number: int) -> None:
         """Publish with the source timestamp of the platform's publisher."""
-        attachment = pack(next(self._numbers), sent_ns, self.gid)
+        gid, own_number = self.identity(publisher, number)
+        attachment = pack(own_number, sent_ns, gid)
         try:
             self._entity.put(ctypes.string_at(address, size), attachment=attachment)
         except zenoh.ZError as error:
             raise OutsideError(str(error)) from error
 
+    def identity(self, _publisher: bytes, _number: int) -> tuple[bytes, int]:
+        """Return gid and number outside of a message of a platform's publisher."""
+        return self.gid, next(self._numbers)
+
     def has_listeners(self) -> bool:
         """Return whether others subscribe, with a token in the graph or without any."""
-        name = self._declared.token.name
+        name = self._token.name
         if self._fitting():
             return True
         is_matched = self._listener is not None and self._entity.matching_status.matching
@@ -247,7 +264,7 @@ class ZenohPublisher:
         return self._fitting()
 
     def _fitting(self) -> int:
-        token = self._declared.token
+        token = self._token
         found = self._graph.endpoints("MS", token.name)
         return sum((t.type, t.type_hash) == (token.type, token.type_hash) for t in found)
 
@@ -257,5 +274,6 @@ class ZenohPublisher:
 
     def close(self) -> None:
         """Destroy it."""
-        self._declared.withdraw()
+        if self._declared is not None:
+            self._declared.withdraw()
         self._entity.undeclare()

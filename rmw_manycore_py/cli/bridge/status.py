@@ -54,9 +54,9 @@ def _show(rows: list[dict[str, Any]]) -> None:
 
 
 def _domain(row: dict[str, Any]) -> str:
-    """Return the domain, with the engine unless it is the default."""
+    """Return the domain, or the other host, with the engine unless it is the default."""
     is_default = row["engine"] == OutsideSettings().engine
-    return f"{row['domain']}" if is_default else f"{row['engine']} {row['domain']}"
+    return f"{row['domain']}" if is_default else f"{row['engine']} {row['peer'] or row['domain']}"
 
 
 def _datagrams_text(rows: list[dict[str, Any]]) -> str:

@@ -63,7 +63,7 @@ def prepared_run(
     occupied = occupied_cores(loaded.platform_name) if joins else ()
     placement = resolve(loaded, occupied)
     if joins:  # the run that is there has the links to other hosts
-        placement = replace(placement, links=None)
+        placement = replace(placement, links=())
     return Run(placement, Mode(loaded, joins, detached, bool(nodes), virtual)), placement
 
 

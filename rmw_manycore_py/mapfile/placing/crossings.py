@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
+from dataclasses import replace
+from itertools import chain
 from typing import TYPE_CHECKING, Any, cast
 
 from rmw_manycore_py.errors import MapfileError
@@ -64,14 +66,21 @@ def bridge_placement(
     return BridgePlacement(placed, lanes, bridge.host_cpu or (), bridge.outside.settings)
 
 
-def links_placement(mapfile: Mapfile, used: Collection[Core]) -> BridgePlacement | None:
-    """Return what joins this host's part of a platform with the parts of other hosts."""
+def links_placement(mapfile: Mapfile, used: Collection[Core]) -> tuple[BridgePlacement, ...]:
+    """Return what joins this host's part of a platform with the parts of other hosts.
+
+    The first is inward, the others are outward, one for each host.
+    """
     if mapfile.host is None:
-        return None
+        return ()
     addresses = {name: host.address for name, host in mapfile.sections.hosts.items()}
-    listen = addresses.pop(mapfile.host)
-    settings = OutsideSettings("hosts", tuple(addresses.values()), listen, mapfile.host)
-    return BridgePlacement(host_routes(), _lanes(mapfile, used, 1), outside=settings)
+    own = OutsideSettings("hosts", listen=addresses.pop(mapfile.host), host=mapfile.host)
+    outward = (replace(own, connect=(there,), peer=peer) for peer, there in addresses.items())
+    cores = chain(*_lanes(mapfile, used, len(addresses)))  # each has one process
+    return tuple(
+        BridgePlacement(host_routes("outward" if one.peer else "inward"), ((core, core),), (), one)
+        for one, core in zip((own, *outward), cores, strict=False)
+    )
 
 
 def _lanes(mapfile: Mapfile, used: Collection[Core], count: int) -> tuple[tuple[Core, Core], ...]:

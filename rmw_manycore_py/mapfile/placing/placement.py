@@ -252,7 +252,8 @@ class Placement:
     :param host_cpus: host CPU of each core in use, those of receive threads and workers included.
     :param bridge: what crosses to the outside; None where nothing does.
     :param notices: what the user should know, although nothing is wrong.
-    :param links: what joins this host's part with those of other hosts; None for the whole.
+    :param links: what joins this host's part with those of other hosts: from all of them, and to
+        each; none for the whole.
     """
 
     name: str
@@ -263,12 +264,12 @@ class Placement:
     host_cpus: Mapping[Core, int]
     bridge: BridgePlacement | None
     notices: tuple[str, ...]
-    links: BridgePlacement | None = None
+    links: tuple[BridgePlacement, ...] = ()
 
     @property
     def crossings(self) -> tuple[BridgePlacement, ...]:
         """Everything that leaves the platform or this host's part of it."""
-        return tuple(one for one in (self.bridge, self.links) if one is not None)
+        return (*filter(None, (self.bridge,)), *self.links)
 
     def receive_priority(self, cluster: int, inherited: Scheduling) -> int:
         """Return the real-time priority of a cluster's receive thread; 0 = none.

@@ -91,7 +91,7 @@ def _placement(
     taken |= {core for lane in bridge.cores for core in lane} if bridge else set()
     links = links_placement(mapfile, taken)
     cpus = usable_cpus()
-    beside = {core.cluster for one in (bridge, links) if one for core in chain(*one.cores)}
+    beside = {core.cluster for one in (bridge, *links) if one for core in chain(*one.cores)}
     host_cpus = assign_cpus(mapfile, [*cores.values(), *of_workers], beside, cpus, kept)
     launched = {name: start.launched for name, start in starts.items()}
     rules = {name: launch_rules(name, launched) for name in starts}

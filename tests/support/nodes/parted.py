@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""One mapfile over two hosts, `a` with a talker and `b` with a listener; nodes beside them."""
+"""One mapfile over hosts, `a` with a talker, the others with a listener; nodes beside them."""
 
 from __future__ import annotations
 
@@ -13,20 +13,23 @@ from support.processes.platforms import unique_platform
 from support.processes.program import Program
 
 HOSTS = ("a", "b")
-HEARD = r"^listener .*I heard: 'Hello World"
-MAPFILE = """
-platform: {{clusters: 2, cores_per_cluster: 8}}
-hosts:
-  a: {{clusters: [1], address: {a}}}
-  b: {{clusters: [2], address: {b}}}
-nodes:
-  talker: {{cluster: 1, module: rmw_manycore_py.examples.talker}}
-  listener: {{cluster: 2, module: rmw_manycore_py.examples.listener}}
-"""
+HEARD = r"^listener\d? .*I heard: 'Hello World"
+
+
+def _mapfile(addresses: Mapping[str, str]) -> str:
+    """Return a mapfile with one cluster for each host."""
+    hosts, nodes = ["hosts:"], ["nodes:"]
+    for cluster, (host, address) in enumerate(addresses.items(), 1):
+        hosts.append(f"  {host}: {{clusters: [{cluster}], address: {address}}}")
+        name = "talker" if cluster == 1 else f"listener{cluster if cluster > 2 else ''}"
+        module = f"rmw_manycore_py.examples.{name.rstrip('0123456789')}"
+        nodes.append(f"  {name}: {{cluster: {cluster}, module: {module}}}")
+    shape = f"platform: {{clusters: {len(addresses)}, cores_per_cluster: 8}}"
+    return "\n".join((shape, *hosts, *nodes, ""))
 
 
 class Parted:
-    """Two hosts, each with a platform; `prefixes` are words that run a command on one."""
+    """Hosts, each with a platform; `prefixes` are words that run a command on one."""
 
     def __init__(
         self,
@@ -35,10 +38,10 @@ class Parted:
         addresses: Mapping[str, str],
         prefixes: Mapping[str, list[str]] | None = None,
     ) -> None:
-        self._start, self._prefixes = start, prefixes or {}
-        self.platforms = {host: unique_platform() for host in HOSTS}
+        self._start, self._prefixes, self.addresses = start, prefixes or {}, addresses
+        self.platforms = {host: unique_platform() for host in addresses}
         self.mapfile = directory / "hosts.yaml"
-        self.mapfile.write_text(MAPFILE.format(**addresses))
+        self.mapfile.write_text(_mapfile(addresses))
 
     def run(self, host: str, **env: str) -> Program:
         """Start the part of a host."""
@@ -46,10 +49,11 @@ class Parted:
         words = [*self._prefixes.get(host, ()), *command]
         return self._start(words, MANYCORE_PLATFORM=self.platforms[host], **env)
 
-    def run_both(self, **env: str) -> dict[str, Program]:
-        """Start both parts, and return once the listener hears the talker."""
-        runs = {host: self.run(host, **env) for host in HOSTS}
-        runs["b"].wait_for(HEARD)
+    def run_all(self, **env: str) -> dict[str, Program]:
+        """Start all parts, and return once the listeners hear the talker."""
+        runs = {host: self.run(host, **env) for host in self.platforms}
+        for host in [*self.platforms][1:]:
+            runs[host].wait_for(HEARD)
         return runs
 
     def node(self, host: str, function: Callable[..., None], *arguments: Any) -> Program:
@@ -57,8 +61,19 @@ class Parted:
         command = peer_command(function, *arguments)
         return self._start(command, MANYCORE_PLATFORM=self.platforms[host])
 
-    def row(self, host: str, direction: str, name: str, kind: str = "topic") -> dict[str, Any]:
-        """Return the counters of what crosses."""
-        key = (direction, name, kind)
+    def command(self, host: str, *words: str) -> str:
+        """Return what `manycore` prints on a host."""
+        platform = self.platforms[host]
+        program = self._start([*map(str, manycore_command(*words))], MANYCORE_PLATFORM=platform)
+        assert program.wait() == 0, program
+        return program.output
+
+    def row(
+        self, host: str, direction: str, name: str, kind: str = "topic", peer: str | None = None
+    ) -> dict[str, Any]:
+        """Return the counters of what crosses, to one peer if there are several."""
+        wanted = {"direction": direction, "inside": name, "kind": kind}
+        if peer is not None:
+            wanted["peer"] = peer
         rows = status(self.platforms[host])
-        return next((r for r in rows if (r["direction"], r["inside"], r["kind"]) == key), {})
+        return next((r for r in rows if wanted.items() <= r.items()), {})

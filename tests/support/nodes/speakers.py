@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from typing import Any
 
@@ -50,11 +51,57 @@ def hear(topic: str, words: dict[str, Any]) -> None:
         spin_until(node, lambda: False, 1e6)
 
 
-def flood(topic: str) -> None:
+def flood(topic: str, size: int = 200_000, depth: int = 10) -> None:
     """Publish much more than the buffers of a slow link or a stopped subscriber hold."""
     with peer_node("flooder") as node:
-        message = type_of("std_msgs/msg/String")(data="x" * 200_000)
-        publisher = node.create_publisher(type_of("std_msgs/msg/String"), topic, qos({}))
+        message = type_of("std_msgs/msg/String")(data="x" * size)
+        kept = qos({"depth": depth})
+        publisher = node.create_publisher(type_of("std_msgs/msg/String"), topic, kept)
         node.create_timer(0.005, lambda: publisher.publish(message))
         announce("flooding")
         spin_until(node, lambda: False, 1e6)
+
+
+def say_as(name: str, topic: str, words: dict[str, Any]) -> None:
+    """Publish the node's name, again and again."""
+    with peer_node(name) as node:
+        message = type_of("std_msgs/msg/String")(data=name)
+        publisher = node.create_publisher(type_of("std_msgs/msg/String"), topic, qos(words))
+        node.create_timer(0.05, lambda: publisher.publish(message))
+        announce("said")
+        spin_until(node, lambda: False, 1e6)
+
+
+def hear_gids(topic: str, count: int) -> None:
+    """Print the nodes of several publishers once the gid of each one's texts is that of its node.
+
+    The texts are the names of the nodes.
+    """
+    from rmw_manycore_py.native import _transport
+
+    platform = os.environ["MANYCORE_PLATFORM"]
+    with _transport.Process(platform, label="gid_hearer") as process:
+        heard = process.subscription(topic, "std_msgs/msg/String", _transport.Qos())
+        found: set[str] = set()
+        while len(found) < count:
+            seen = process.epoch()
+            while claim := heard.claim():
+                gid, text = claim.publisher, claim.data[8:-1].decode()
+                claim.release()
+                nodes = {e.gid: e.node_name for e in process.endpoints_of(topic)}
+                assert nodes[gid] == text
+                found.add(text)
+            process.wait(seen, 1.0)
+        announce(f"heard {' and '.join(sorted(found))} from their gids")
+        heard.close()
+
+
+def say_stamped(topic: str, stamp_ns: int) -> None:
+    """Publish a text again and again, as at one time of another clock."""
+    from rmw_manycore_py.native import _transport
+
+    with _transport.Process(os.environ["MANYCORE_PLATFORM"], label="stamper") as process:
+        publisher = process.publisher(topic, "std_msgs/msg/String", _transport.Qos())
+        while True:
+            publisher.publish(b"\0\1\0\0\5\0\0\0then\0", stamp_ns)
+            process.wait(process.epoch(), 0.05)

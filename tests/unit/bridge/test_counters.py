@@ -55,3 +55,14 @@ def test_of_many_publishers_the_first_give_way(created: Create, tmp_path: Path) 
         row.note_last(gid(number), number)
     assert row.last_numbers == {gid(number): number for number in range(2, 18)}
     assert row.as_dict()["reason"] == ""
+
+
+def test_the_gid_of_an_open_publisher_is_never_forgotten(created: Create, tmp_path: Path) -> None:
+    """Its messages would be passed on as another's."""
+    row = created(tmp_path / "bridge-inward-0", CHATTER).rows[0]
+    row.add_gid(gid(1))
+    for number in range(2, 200):
+        row.add_gid(gid(number))
+        row.close_gid(gid(number))
+    assert row.has_gid(gid(1))
+    assert [number for number in (2, 100, 198, 199) if row.has_gid(gid(number))] == [198, 199]

@@ -51,7 +51,7 @@ def zenoh() -> Iterator[Any]:
 
 def publish(publisher: Any) -> None:
     buffer = ctypes.create_string_buffer(MESSAGE, len(MESSAGE))
-    publisher.publish(ctypes.addressof(buffer), len(MESSAGE), 1)
+    publisher.publish(ctypes.addressof(buffer), len(MESSAGE), 1, bytes(16), 1)
 
 
 def test_a_message_that_zenoh_refuses_is_an_error_of_the_outside(zenoh) -> None:
