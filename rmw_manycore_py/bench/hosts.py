@@ -13,7 +13,7 @@ Host = list[str]  # command prefix that runs a program there
 # Namespaces of one machine share memory, hosts do not.
 NETWORK = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
 ADDRESSES = ("10.77.0.1", "10.77.0.2")
-_CABLE = "cable"
+CABLE = "cable"
 _BURST = "256kb"  # of a shaped cable: several times what a timer tick lets pass
 
 
@@ -34,12 +34,12 @@ def two_hosts(rate: str | None = None) -> Iterator[tuple[Host, Host]]:
             _ip("netns", "add", name)
             ending.callback(_ip, "netns", "del", name)
         end, other_end = (("netns", name) for name in names)
-        _ip("link", "add", _CABLE, *end, "type", "veth", "peer", "name", _CABLE, *other_end)
+        _ip("link", "add", CABLE, *end, "type", "veth", "peer", "name", CABLE, *other_end)
         for name, address in zip(names, ADDRESSES, strict=True):
-            _ip("-n", name, "addr", "add", f"{address}/24", "dev", _CABLE)
-            for device in ("lo", _CABLE):
+            _ip("-n", name, "addr", "add", f"{address}/24", "dev", CABLE)
+            for device in ("lo", CABLE):
                 _ip("-n", name, "link", "set", device, "up")
-            _ip("-n", name, "route", "add", "224.0.0.0/4", "dev", _CABLE)
+            _ip("-n", name, "route", "add", "224.0.0.0/4", "dev", CABLE)
             if rate is not None:
                 _shape(name, rate)
         here, there = (["ip", "netns", "exec", name] for name in names)
@@ -48,7 +48,7 @@ def two_hosts(rate: str | None = None) -> Iterator[tuple[Host, Host]]:
 
 def _shape(name: str, rate: str) -> None:
     limit = ("rate", rate, "burst", _BURST, "latency", "50ms")
-    command = ["tc", "-n", name, "qdisc", "add", "dev", _CABLE, "root", "tbf", *limit]
+    command = ["tc", "-n", name, "qdisc", "add", "dev", CABLE, "root", "tbf", *limit]
     subprocess.run(command, check=True, capture_output=True)
 
 

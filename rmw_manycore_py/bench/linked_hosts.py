@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack, closing, contextmanager
 from dataclasses import replace
 from functools import partial
 
@@ -12,6 +13,7 @@ from rmw_manycore_program import own_program
 from rmw_manycore_py.bench.bridging import bridge_command
 from rmw_manycore_py.bench.contenders import BETWEEN, FAST_DDS, Middleware
 from rmw_manycore_py.bench.hosts import ADDRESSES, NETWORK, Host, can_have_hosts, two_hosts
+from rmw_manycore_py.bench.link_upkeep import Beat, set_cable, traffic_bytes
 from rmw_manycore_py.bench.question import PAYLOADS, Question, Run
 from rmw_manycore_py.bench.rclpy_round_trip import WARM_UP, iterations
 from rmw_manycore_py.bench.round_trip import in_us
@@ -27,6 +29,10 @@ LINKED, ZENOH = "two hosts", "plain zenoh"
 SUM = "plain zenoh + 2 platforms"
 SIZES = ("64 B", "1 MiB")
 THROUGHPUT = "throughput 1 MiB over 1 Gbit/s"
+CABLE_RATE = "the cable"
+CABLE_PER_S = 1e9 / 8 / PAYLOADS["1 MiB"]
+IDLE, RESUMED, UNCOUNTED = "idle traffic", "flow after a break of 30 s", "uncounted after a break"
+IDLE_S, BREAK_S, SETTLE_S = 30, 30, 2
 IN_FLIGHT, STRETCH, STRETCHES = 8, 40, 5
 HOSTS = ("a", "b")
 PORT = 7451
@@ -36,12 +42,17 @@ class Node:
     """A host of a measurement: starts nodes there."""
 
     def __init__(self, session: Session, host: Host, party: int) -> None:
-        self._session, self._host, self._party = session, host, party
+        self._session, self.host, self._party = session, host, party
+
+    @property
+    def platform(self) -> str:
+        """Name of its platform."""
+        return self._session.platform
 
     def start(self, module: str, *arguments: object) -> Process:
         """Start a node of the benches."""
         command = own_program(f"{NODES}.{module}", *map(str, arguments))
-        return self._session.start([*self._host, *command], self._party)
+        return self._session.start([*self.host, *command], self._party)
 
 
 Hosts = Callable[[Run], AbstractContextManager[tuple[Node, Node]]]
@@ -75,6 +86,13 @@ def linked_hosts(run: Run) -> Iterator[tuple[Node, Node]]:
 
 
 @contextmanager
+def beating(run: Run) -> Iterator[tuple[Node, Beat]]:
+    """Linked hosts, and messages from the first, which is returned too, to the other."""
+    with linked_hosts(run) as (here, there), closing(Beat(here.platform, there.platform)) as beat:
+        yield here, beat
+
+
+@contextmanager
 def one_platform(run: Run) -> Iterator[tuple[Node, Node]]:
     """No link: one platform on one host."""
     with Session(BETWEEN, run.cpus) as session:
@@ -89,7 +107,8 @@ def measure(run: Run) -> list[Result]:
     """Measure round trips, then throughput."""
     if not can_have_hosts():
         raise ManycoreError("bench hosts: network namespaces need root and ip(8)")
-    return [*(one for size in SIZES for one in _round_trips(run, size)), *_throughput(run)]
+    round_trips = [one for size in SIZES for one in _round_trips(run, size)]
+    return [*round_trips, *_throughput(run), *_upkeep(run)]
 
 
 def _round_trips(run: Run, size: str) -> list[Result]:
@@ -145,10 +164,41 @@ def _throughput(run: Run) -> list[Result]:
         FAST_DDS.name: partial(flood, FAST_DDS.name, dds_hosts),
     }
     rates = run.interleave(THROUGHPUT, "1/s", contenders, higher_is_better=True)
+    if rates:
+        rates.append(Result(THROUGHPUT, CABLE_RATE, "1/s", (CABLE_PER_S,), higher_is_better=True))
     return rates + [
         Result(f"{THROUGHPUT}, lost", name, "messages", tuple(counts))
         for name, counts in lost.items()
     ]
+
+
+def _upkeep(run: Run) -> list[Result]:
+    """Measure the link when nothing crosses it, and when it comes back."""
+    uncounted: list[float] = []
+
+    def idle() -> list[float]:
+        idle_s = run.iterations(IDLE_S)
+        with beating(run) as (here, beat):
+            beat.until_heard()
+            time.sleep(SETTLE_S)
+            before = traffic_bytes(here.host)
+            time.sleep(idle_s)
+            return [(traffic_bytes(here.host) - before) / idle_s]
+
+    def resumed() -> list[float]:
+        with beating(run) as (here, beat):
+            beat.until_heard()
+            before = beat.uncounted()  # published before the other host subscribed
+            set_cable(here.host, "down")
+            beat.for_a_while(BREAK_S)
+            set_cable(here.host, "up")
+            took_s = beat.until_heard()
+            uncounted.append(beat.uncounted() - before)
+            return [took_s]
+
+    results = run.interleave(IDLE, "bytes/s", {LINKED: idle})
+    results += run.interleave(RESUMED, "s", {LINKED: resumed})
+    return results + [Result(UNCOUNTED, LINKED, "messages", tuple(uncounted))] * bool(uncounted)
 
 
 QUESTION = Question(
@@ -157,7 +207,11 @@ QUESTION = Question(
     (
         Goal("round trip 64 B", LINKED, "within", 1.3, SUM),
         Goal(THROUGHPUT, LINKED, "better", 1.0, FAST_DDS.name),
+        Goal(THROUGHPUT, LINKED, "better", 0.9, CABLE_RATE),
         Goal(f"{THROUGHPUT}, lost", LINKED, "within", 0, statistic="largest"),
+        Goal(IDLE, LINKED, "within", 300),
+        Goal(RESUMED, LINKED, "within", 2, statistic="largest"),
+        Goal(UNCOUNTED, LINKED, "within", 0, statistic="largest"),
     ),
     f"hosts are network namespaces joined by a cable of {RATE}; ping on the first CPU, pong on the "
     "second, links on either",
