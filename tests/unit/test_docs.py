@@ -110,7 +110,7 @@ def test_error_pages_quote_what_programs_print() -> None:
         for part in text.split("…")
     }
     long_enough = {(page, part) for page, part in quoted if len(part) >= SHORTEST_PART}
-    assert len(long_enough) > 200
+    assert len(long_enough) > 100
     assert {(page, part) for page, part in long_enough if part not in printed} == set()
 
 
