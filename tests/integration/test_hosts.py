@@ -127,6 +127,7 @@ def test_an_address_that_is_not_free_yet(hosts) -> None:
         runs = {host: hosts.run(host) for host in HOSTS}
         runs["b"].wait_for("cannot listen at tcp/.*, the address of b: .*; trying again")
     runs["b"].wait_for(HEARD)
+    assert runs["b"].output.count("(hosts inward) started") == 1
     assert runs["b"].stop() == 0
 
 

@@ -184,7 +184,7 @@ private:
 
 void bind_process(nb::module_ & module) {
   module.def("now_ns", &qos_now_ns);
-  nb::class_<BoundNode>(module, "Node", nb::is_weak_referenceable());
+  const nb::class_<BoundNode> node(module, "Node", nb::is_weak_referenceable());
   nb::class_<BoundProcess> bound(module, "Process");
   bound
     .def(
