@@ -47,5 +47,6 @@ def available(text: str) -> str:
 def missing_package(name: str) -> UnavailableError:
     """Return the error for a package that is not installed."""
     return UnavailableError(
-        f"the package '{name}'", f"that it is not installed: pip install ./{name}"
+        f"the package '{name}'",
+        f"that it is not installed: pip install ./{name}, or source its workspace",
     )

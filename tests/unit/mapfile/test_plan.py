@@ -60,7 +60,10 @@ def test_a_plan_has_all_nodes_and_comments_on_what_is_missing(plan: Path) -> Non
     text = plan.read_text()
     assert [node.name for node in check(plan).nodes] == NODES
     comments = [line.strip() for line in text.splitlines() if "#" in line and "choose" not in line]
-    missing = "expected the package '{0}', found that it is not installed: pip install ./{0}"
+    missing = (
+        "expected the package '{0}', found that it is not installed: "
+        "pip install ./{0}, or source its workspace"
+    )
     assert comments == [
         "# Choose the clusters. A node gets the first free core unless 'core' is set.",
         "plan: true  # nodes need not be installed for map check and map show; run needs them",
@@ -93,7 +96,7 @@ def test_showing_a_plan_reports_what_is_missing(plan: Path) -> None:
     assert [bool(node["command"]) for node in shown] == [True] + [False] * 5
     assert shown[1]["missing"].startswith("expected the package 'absent'")
     assert (
-        "that it is not installed: pip install ./absent"
+        "that it is not installed: pip install ./absent, or source its workspace"
         in manycore("map", "show", str(plan)).output
     )
 

@@ -131,7 +131,8 @@ def test_nodes_that_cannot_run_here_are_comments(tmp_path: Path, prefix: Path) -
     (comment,) = (line for line in lines if "listener" in line)
     assert comment.startswith("  # listener cannot run here: ")
     assert comment.endswith(
-        "the package 'absent', found that it is not installed: pip install ./absent"
+        "the package 'absent', found that it is not installed: "
+        "pip install ./absent, or source its workspace"
     )
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text("\n".join(lines))

@@ -18,7 +18,10 @@ from support import TIMEOUT_S
 
 pytestmark = pytest.mark.unit
 
-ABSENT = "expected the package 'absent', found that it is not installed: pip install ./absent"
+ABSENT = (
+    "expected the package 'absent', found that it is not installed: "
+    "pip install ./absent, or source its workspace"
+)
 
 Read = Callable[..., LaunchFile]
 HEAD = """\

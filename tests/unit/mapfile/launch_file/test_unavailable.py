@@ -27,7 +27,10 @@ from ament_index_python.packages import get_package_share_directory
 def node(name, **described):
     return Node(executable='sh', name=name, **described)
 """
-PACKAGE = "expected the package 'absent', found that it is not installed: pip install ./absent"
+PACKAGE = (
+    "expected the package 'absent', found that it is not installed: "
+    "pip install ./absent, or source its workspace"
+)
 
 
 def read(directory: Path, actions: str, before: str = "", top: str = "") -> LaunchFile:
