@@ -327,6 +327,7 @@ class NodeSection(Section):
     respawn: Annotated[RespawnSection, OrBool] | None = Field(
         default=None, description="Restart the node when it ends; true, or settings"
     )
+    ends_run: StrictBool = Field(default=False, description="Stop the run when the node ends")
     terminal: StrictBool = Field(
         default=False, description="Give the node a terminal, for manycore attach"
     )

@@ -77,6 +77,7 @@ def _scheduling(node: NodeSection) -> Scheduling | None:
 
 def _rules(node: NodeSection, launched: LaunchRules) -> LaunchRules:
     """Return the launch file's rules, overridden by the mapfile's."""
+    launched = replace(launched, ends_run=launched.ends_run or node.ends_run)
     if node.respawn is None:
         return launched
     retries = node.respawn.max_retries

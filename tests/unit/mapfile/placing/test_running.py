@@ -104,6 +104,11 @@ def test_a_mapfile_overrules_the_respawn_of_a_launch_file(
     assert by_name(check(launched(written)))["first"]["respawn"] == expected
 
 
+def test_a_mapfile_says_whose_end_stops_the_run(launched: Callable[..., Path]) -> None:
+    nodes = by_name(check(launched(", ends_run: true")))
+    assert [name for name, node in nodes.items() if node["ends_run"]] == ["first"]
+
+
 def test_nodes_get_cores_that_no_other_run_has(write: Write) -> None:
     mapfile = load_mapfile(
         write("nodes:\n  a: {cluster: 1, script: talker.py}\n  b: {cluster: 1, command: 'true'}\n")
