@@ -50,13 +50,16 @@ Call parse(const std::string & text) {
 
 /// Whether only another thread of its process or the outside ends the call. Timeouts of futexes are
 /// allowed where not `strict`: libraries have threads that look at something every few seconds.
+/// Those of futex_wait(), in shared memory, are not: another process computes for the thread, as
+/// workers do. glibc and other libraries wait there with other flags.
 bool is_sleep(const Call & call, bool strict) {
   switch (call.number) {
     case SYS_futex: {
       const auto command = call.arguments[1] & static_cast<unsigned long>(FUTEX_CMD_MASK);
       const bool is_private = (call.arguments[1] & FUTEX_PRIVATE_FLAG) != 0;
       const bool waits = command == FUTEX_WAIT || command == FUTEX_WAIT_BITSET;
-      return waits && (!strict || (is_private && call.arguments[3] == 0));
+      const bool is_ours = call.arguments[1] == FUTEX_WAIT_BITSET;
+      return waits && !is_ours && (!strict || (is_private && call.arguments[3] == 0));
     }
 #ifdef SYS_poll
     case SYS_poll:
@@ -82,7 +85,7 @@ bool is_sleep(const Call & call, bool strict) {
 std::string name_of(const Call & call) {
   switch (call.number) {
     case SYS_futex:
-      return "waits for a lock, or with a timeout of the wall clock";
+      return "waits for a lock, for another process, or with a timeout of the wall clock";
     case SYS_clock_nanosleep:
     case SYS_nanosleep:
       return "sleeps by the wall clock";

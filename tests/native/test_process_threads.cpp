@@ -13,6 +13,7 @@
 #include <future>
 #include <thread>
 
+#include "platform/futex.hpp"
 #include "platform/process_threads.hpp"
 
 using namespace manycore;
@@ -51,6 +52,12 @@ void compute() {
   for (volatile int i = 0; true; i = i + 1) {
   }
 }
+void wait_for_another_process() {
+  static FutexWord word{0};
+  while (true) {
+    futex_wait(word, 0, std::nullopt);
+  }
+}
 void sleep_long() { usleep(1'000'000'000); }
 
 /// Looks until the threads have come so far.
@@ -80,6 +87,14 @@ TEST_CASE(
   CHECK(look.tid > child.pid());
   ProcessThreads threads(child.pid());
   CHECK(threads.look({look.tid}, {}).asleep);
+}
+
+TEST_CASE("a thread that another process computes for is awake, and named") {
+  const TwoThreads child(wait_for_another, wait_for_another_process);
+  const auto waits = [](const auto & look) { return !look.doing.empty(); };
+  const ProcessThreads::Look look = look_until(child.pid(), waits);
+  CHECK(!look.asleep);
+  CHECK(look.doing == "waits for a lock, for another process, or with a timeout of the wall clock");
 }
 
 TEST_CASE("a thread that computes is awake, though another one sleeps") {
