@@ -15,6 +15,7 @@ from rmw_manycore_program import own_program
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.events import Held, Notice
 from rmw_manycore_py.mapfile.placing.placement import Placement
+from rmw_manycore_py.platform.virtual_clock import announced
 from rmw_manycore_py.process.parent_death import dies_with_this_process
 
 _PROGRAM = "lib/rmw_manycore/manycore_timekeeper"
@@ -160,8 +161,10 @@ def timekeeper(platform: str, mode: VirtualTime) -> Iterator[Timekeeper]:
             first += byte
         if not first.startswith(b"page "):
             raise ManycoreError("the timekeeper of virtual time did not start")
+        page = first.decode().split()[1]
         try:
-            yield Timekeeper(process, first.decode().split()[1])
+            with announced(platform, page):
+                yield Timekeeper(process, page)
         finally:
             process.kill()
 

@@ -72,6 +72,8 @@ class Viewer:
         if not self.is_there:
             self._note((Event("platform", f"platform {self.platform} has started"),))
         self.is_there, self.state = True, f"platform {self.platform}"
+        if look.virtual_s is not None:
+            self.state += f", virtual time {look.virtual_s:.3f} s"
         self.look, self.chip = look, chip
         self.marks = chip.marks(look)
         self.history.append(look, time.time())

@@ -123,6 +123,7 @@ def _is_screen() -> bool:
 
 def _row(look: Look) -> dict[str, object]:
     return {
+        "virtual_s": look.virtual_s,
         "clusters": cluster_rows(look),
         "nodes": node_rows(look),
         "processes": process_rows(look),

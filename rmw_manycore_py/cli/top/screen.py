@@ -54,7 +54,9 @@ def screen(look: Look, choices: Choices, height: int | None = None) -> Renderabl
     clusters = cluster_rows(look)
     room = None if height is None else max(height - len(clusters) - 7, 2)
     shown_nodes, shown_topics = _share(len(nodes), len(topics), room)
+    virtual = "" if look.virtual_s is None else f"virtual time {look.virtual_s:.3f} s"
     parts: list[RenderableType] = [
+        *([Text(virtual)] if virtual else []),
         _clusters(clusters),
         Text(),
         _nodes(nodes[:shown_nodes]),

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator
+from inspect import signature
 from typing import Any
 
 from rmw_manycore_py.cli.common import view
@@ -15,6 +16,7 @@ from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.native._transport import EndpointInfo
+from rmw_manycore_py.platform.virtual_clock import virtual_clock
 from rmw_manycore_py.process.spinning import spin_once
 from rmw_manycore_py.ros.names import expand
 from rmw_manycore_py.ros.qos import all_reliable, all_transient_local
@@ -52,6 +54,7 @@ class Listener:
         self._timers: list[tuple[float, Callable[[], None]]] = []
         self._over = False
         self._clock: Any = None
+        self._published_s: float | None = None  # the newest message, in a run in virtual time
         if not waits:
             self._message_type()
 
@@ -64,7 +67,9 @@ class Listener:
         self._over = True
 
     def now_s(self) -> float:
-        """Return the time used for measuring in seconds: simulated, or since 1970."""
+        """Return the time used for measuring in seconds: simulated, virtual, or since 1970."""
+        if self._published_s is not None:
+            return self._published_s
         return float(self._clock.now().nanoseconds * 1e-9)
 
     def run(self, timeout_s: float | None = None) -> None:
@@ -97,14 +102,21 @@ class Listener:
         endpoints = _endpoints(self._platform, self._topic)
         print_notices(mixed_offers(endpoints, self._qos))
         reliable, kept = offered_policies(endpoints)
+        is_virtual = not self._sim_time and virtual_clock(self._platform) is not None
         node.create_subscription(
             self._message_type(),
             self._topic,
-            self._heard,
+            self._noting_time if is_virtual else self._heard,
             self._qos.profile(reliable=reliable, kept=kept),
             event_callbacks=SubscriptionEventCallbacks(message_lost=self._lost),
             raw=self._raw,
         )
+
+    def _noting_time(self, message: Any, info: Any) -> None:
+        """Take the time of a publication: this process lives in wall time."""
+        self._published_s = info["source_timestamp"] * 1e-9
+        takes_info = len(signature(self._heard).parameters) > 1
+        self._heard(*((message, info) if takes_info else (message,)))
 
     def _message_type(self) -> Any:
         if self._type_name:

@@ -7,7 +7,7 @@ import json
 import os
 import selectors
 import time
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -65,7 +65,8 @@ def play(platform: str | None, settings: Settings, *, as_json: bool) -> None:
         )
         print_notices(gap_notices(recording, player.start_ns, player.end_ns))
         if is_virtual:  # which only threads keep that wait for it
-            player.play()
+            with suppress(KeyboardInterrupt):
+                player.play()
         else:
             _run(player, position, settings, StatusLine(quiet=as_json))
     _report(player.tally, as_json)

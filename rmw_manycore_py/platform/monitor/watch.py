@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from rmw_manycore_py.errors import ManycoreError
@@ -18,6 +18,7 @@ from rmw_manycore_py.platform.monitor.loads import Loads
 from rmw_manycore_py.platform.monitor.losses import Losses
 from rmw_manycore_py.platform.monitor.sample import Sample, take_sample
 from rmw_manycore_py.platform.monitor.workers import Workers
+from rmw_manycore_py.platform.virtual_clock import passed_s, virtual_clock
 
 # Window for rates, so that a topic of 1 Hz does not flicker at two looks a second.
 WINDOW_S = 2.0
@@ -34,6 +35,7 @@ class Look:
     happened: tuple[Event, ...]  # since the previous look
     latencies: dict[str, TopicLatency]  # by topic; empty unless traced
     trace: _transport.TraceState | None
+    virtual_s: float | None  # since the begin of a run in virtual time
 
     @property
     def graph(self) -> Graph:
@@ -46,6 +48,7 @@ class _Seen:
     """State kept while a platform exists."""
 
     platform: _transport.Platform
+    clock: Callable[[], int] | None = None  # of a run in virtual time
     generation: int = -1
     members: tuple[tuple[int, int], ...] = ()  # (slot, pid) when the graph was read
     graph: Graph | None = None
@@ -112,6 +115,7 @@ class Watch:
         self.close()
 
     def _look_at(self, seen: _Seen) -> Look:
+        seen.clock = seen.clock or virtual_clock(self._name)
         graph = self._graph(seen)
         workers = seen.workers.of([member.pid for member in graph.members])
         sample = take_sample(seen.platform, graph, workers)
@@ -128,6 +132,7 @@ class Watch:
             happened,
             self._latencies,
             self._trace,
+            passed_s(seen.clock),
         )
 
     def _graph(self, seen: _Seen) -> Graph:

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import os
 import threading
+import time
 
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.platform.environment import own_cluster
+from rmw_manycore_py.platform.virtual_clock import virtual_clock
 from rmw_manycore_py.recording.record.side import BATCH, Heard, Offer, RawSubscription
 
 
@@ -24,7 +26,15 @@ class Inside:
         self._generation = self._process.graph_generation()
         self._subscriptions: list[_Subscription] = []
         self._woken = threading.Event()
+        self._is_virtual = virtual_clock(platform) is not None
         self.stale = True
+
+    def heard_ns(self, published_ns: int, /) -> int:
+        """Return now; in virtual time, in which messages are there at once, when it was published.
+
+        The recorder lives in wall time.
+        """
+        return published_ns if self._is_virtual else time.time_ns()
 
     def offers(self) -> dict[str, list[Offer]]:
         """Return the publishers by topic."""

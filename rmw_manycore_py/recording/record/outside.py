@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import time
 from typing import Any
 
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -27,6 +28,10 @@ class Outside:
             ros_domain(), f"_manycore_record_{os.getpid()}", self._changed, lambda _: False
         )
         self.stale = True
+
+    def heard_ns(self, _published_ns: int, /) -> int:
+        """Return now."""
+        return time.time_ns()
 
     def _changed(self) -> None:
         self.stale = True

@@ -54,6 +54,9 @@ class Side(Protocol):
         :raises ImportError: if its type is required and not installed.
         """
 
+    def heard_ns(self, published_ns: int, /) -> int:
+        """Return the time, since 1970, at which a message is heard; now."""
+
     def turn(self) -> None:
         """Deliver arrived messages; block until there are more, or publishers change."""
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 
 from rmw_manycore_py.native._transport import Qos
@@ -47,7 +46,9 @@ class RecordedTopic:
         if number <= self._last.get(publisher, -1):
             return
         self._last[publisher] = number
-        self._writing.write(Taken(self.row, time.time_ns(), published_ns, number, data))
+        self._writing.write(
+            Taken(self.row, self._side.heard_ns(published_ns), published_ns, number, data)
+        )
 
     def take_rest(self) -> None:
         """Take the messages that have arrived, at most the queue depth."""
