@@ -49,6 +49,18 @@ def driven(start: Any, course: Path, *options: str) -> dict[str, Any]:
     return {**json.loads("{" + figures), "said": head}
 
 
+@pytest.mark.stress
+def test_the_same_drive_again_in_virtual_time(start, course) -> None:
+    """The laptop is a node of the run; the end has the vehicle's place to a micrometre."""
+    ends = []
+    for _ in range(2):
+        drive = ("run", course / "whill_virtual.yaml", "--virtual", "--instant")
+        run = start(manycore_command(*drive, "--duration", "60"))
+        ends.append(run.wait_for("arrived, after .*", LONG_S).group())
+        assert run.wait() == 0
+    assert ends[0] == ends[1]
+
+
 @pytest.mark.long
 def test_the_gate_dies_and_the_vehicle_drives_on_until_the_lidar_stops(start, platform, course):
     """The vehicle stands while no command passes, and is engaged again; without pose it stops."""

@@ -11,6 +11,7 @@ import click
 
 from rmw_manycore_py.bench.machine import machine_header
 from rmw_manycore_py.bench.virtual import VirtualRun, runs_of
+from rmw_manycore_py.cli.bench.driven import driven
 from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples, json_option, number_option
@@ -23,6 +24,7 @@ from rmw_manycore_py.errors import EXIT_FAILURE
     "virtual",
     epilog=examples(
         "manycore bench virtual autoware_reference --runs 100 --duration 10",
+        "manycore bench virtual whill --duration 60 --kill ekf_localizer@30",
         "manycore bench virtual map.yaml --profile app.profile.json --platform coolidge",
     ),
 )
@@ -37,6 +39,7 @@ from rmw_manycore_py.errors import EXIT_FAILURE
 )
 @click.option("--platform", "platform_name", default="host", metavar="NAME", help="As of run.")
 @number_option("--seed", within=(0, None), default=0, help="As of manycore run.")
+@click.option("--kill", "kills", multiple=True, metavar="NODE@S", help="As of manycore run.")
 @json_option
 def command(
     mapfile: Path,
@@ -46,25 +49,29 @@ def command(
     profile: Path | None,
     platform_name: str,
     seed: int,
+    kills: tuple[str, ...],
     as_json: bool,
 ) -> None:
     """Compare runs of MAPFILE in virtual time.
 
     In turn alone, beside three busy loops, and on one CPU. Compares what the nodes print, and each
     message with the virtual time at which it is published and taken. The exit status is 1 if a run
-    differs from the first one.
+    differs from the first one. The installed mapfiles ros_lite and whill get their vehicle as a
+    node.
     """
     options: list[str] = ["--instant"]
     if profile is not None:
         options = ["--profile", str(profile), "--platform", platform_name, "--seed", str(seed)]
+    options += [word for kill in kills for word in ("--kill", kill)]
     found = []
-    for one in runs_of(mapfile, options, runs, duration_s, timeout):
-        found.append(one)
-        if not as_json:
-            echo(
-                f"run {len(found):3}, {one.condition:17}: {one.digest[:16]}, "
-                f"{len(one.log)} events, {one.wall_s:.1f} s"
-            )
+    with driven(mapfile) as complete:
+        for one in runs_of(complete, options, runs, duration_s, timeout):
+            found.append(one)
+            if not as_json:
+                echo(
+                    f"run {len(found):3}, {one.condition:17}: {one.digest[:16]}, "
+                    f"{len(one.log)} events, {one.wall_s:.1f} s"
+                )
     same = sum(one.digest == found[0].digest for one in found)
     if as_json:
         print_json({"machine": machine_header(), "runs": [_row(one) for one in found]})

@@ -6,7 +6,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-import numpy as np
 
 from rmw_manycore_py.cli.common.options import examples, number_option
 from rmw_manycore_py.cli.common.output_file import writing
@@ -20,14 +19,12 @@ from rmw_manycore_py.papers.roslite2.course.directory import (
     WHEEL_BASE_M,
     Course,
     check_inside,
-    mapped,
-    thinned,
     write_course,
 )
 from rmw_manycore_py.papers.roslite2.course.shape import CourseShape
-from rmw_manycore_py.papers.roslite2.course.streets import build_streets
+from rmw_manycore_py.papers.roslite2.course.synthetic import synthetic_course
 from rmw_manycore_py.papers.roslite2.course.trajectory_file import read_trajectory
-from rmw_manycore_py.papers.roslite2.course.views import PointView, StreetView
+from rmw_manycore_py.papers.roslite2.course.views import PointView
 from rmw_manycore_py.papers.roslite2.laws.wheelchair import MAX_SPEED_M_S
 
 MIN_STRAIGHT_M = 5.0
@@ -120,10 +117,7 @@ def _synthetic(shape: CourseShape, seed: int) -> Course:
             f"--length {shape.length_m:g}: with turns of {shape.turn_radius_m:g} m expected at "
             f"least {needed:.0f} m; or give a smaller --turn-radius"
         )
-    generator = np.random.default_rng(seed)
-    trajectory = shape.trajectory()
-    view = StreetView(build_streets(shape, trajectory, generator))
-    return Course(trajectory, thinned(mapped(view, trajectory, generator)), view)
+    return synthetic_course(shape, seed)
 
 
 def _own(map_path: Path, trajectory_path: Path) -> Course:

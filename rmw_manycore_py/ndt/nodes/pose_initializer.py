@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -27,6 +26,7 @@ from rmw_manycore_py.ndt.messages.conversions import (
 )
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
 from rmw_manycore_py.ndt.nodes.support.running import run_node
+from rmw_manycore_py.ndt.nodes.support.steady import steady_s
 
 VARIANCES = (1.0, 1.0, 0.01, 0.01, 0.01, 0.2)  # m^2, rad^2
 AT_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)  # x, y, z, quaternion
@@ -172,13 +172,13 @@ class PoseInitializer(Node):
             self._finish(self._wanted)
             return
         request = AlignService.Request(pose_with_covariance=self._wanted)
-        self._called_s = time.monotonic()
+        self._called_s = steady_s()
         self._call = self._align.call_async(request)
         self._call.add_done_callback(self._on_aligned)
 
     def _forget_unanswered_call(self) -> None:
         """Allow a new attempt: a killed or restarted matcher does not answer."""
-        is_late = time.monotonic() - self._called_s > ANSWER_TIMEOUT_S
+        is_late = steady_s() - self._called_s > ANSWER_TIMEOUT_S
         if self._call is None or (self._align.service_is_ready() and not is_late):
             return
         self._align.remove_pending_request(self._call)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from functools import partial
 
@@ -16,6 +15,7 @@ from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
 from rmw_manycore_py.ndt.nodes.scan_matcher.map_cells import MapCells
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters
+from rmw_manycore_py.ndt.nodes.support.steady import steady_s
 
 ANSWER_TIMEOUT_S = 30.0  # reading hundreds of megabytes of cells from a slow disk
 
@@ -64,7 +64,7 @@ class MapLoaderClient:
         request.cached_ids = self._cells.ids
         count = len(request.cached_ids)
         self._last = {"is_need_rebuild": count == 0, "maps_size_before": count}
-        self._asked_s = time.monotonic()
+        self._asked_s = steady_s()
         call = self._client.call_async(request)
         self._call, self._handled = call, Future()
         call.add_done_callback(partial(self._on_answer, (x, y)))
@@ -74,7 +74,7 @@ class MapLoaderClient:
         """Give up a call that is no longer answered, so that the next one can be made."""
         if self._call is None:
             return
-        is_late = time.monotonic() - self._asked_s > ANSWER_TIMEOUT_S
+        is_late = steady_s() - self._asked_s > ANSWER_TIMEOUT_S
         if self._client.service_is_ready() and not is_late:
             return
         call, self._call = self._call, None

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
 from rmw_manycore_py.ndt.nodes.scan_matcher.scan_inbox import ScanInbox, WaitingScan
+from rmw_manycore_py.ndt.nodes.support.steady import steady_s
+from rmw_manycore_py.process.virtual_time import lives_in_virtual_time
 
 Job = Callable[[], None]
 # Incremental work: yields False if it has to wait for `wake`.
@@ -56,7 +57,7 @@ class MatchingThread:
     def put_scan(self, message: Any, stamp_s: float) -> None:
         """Queue a scan; it is skipped if a newer one is ready first. Thread-safe."""
         with self._changed:
-            self._inbox.put(message, stamp_s, time.monotonic())
+            self._inbox.put(message, stamp_s, steady_s())
             self._changed.notify()
 
     def wake(self) -> None:
@@ -110,7 +111,7 @@ class MatchingThread:
                 can_step = bool(self._steps) and self._may_step
                 if can_step and self._steps_turn:
                     return [], self._step
-                now_s = time.monotonic()
+                now_s = steady_s()
                 scan = self._inbox.take(now_s)
                 if scan is not None:
                     self._steps_turn = True
@@ -118,7 +119,9 @@ class MatchingThread:
                 if can_step:
                     return [], self._step
                 due_s = self._inbox.due_s()
-                self._changed.wait(None if due_s is None else max(due_s - now_s, 0.0))
+                is_timed = not lives_in_virtual_time()  # there, what comes next ends the wait
+                timeout_s = max(due_s - now_s, 0.0) if due_s is not None and is_timed else None
+                self._changed.wait(timeout_s)
             return [], None
 
     def _step(self) -> None:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from typing import Any
 
 from rclpy.node import Node
@@ -12,6 +11,7 @@ from rclpy.utilities import get_rmw_implementation_identifier
 
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.ndt.matching.matcher import Matcher
+from rmw_manycore_py.process.virtual_time import lives_in_virtual_time
 from rmw_manycore_py.ros.domain import default_platform
 
 
@@ -33,7 +33,7 @@ class MatchingTrace:
     def arrived(self, message: Any) -> None:
         """Record the callback in which a scan arrived."""
         if self._tracer is not None and self._tracer.is_on:
-            self._arrivals[id(message)] = (threading.get_native_id(), time.monotonic_ns())
+            self._arrivals[id(message)] = (threading.get_native_id(), _transport.now_ns())
 
     def resume(self, message: Any) -> None:
         """Record that the calling thread continues with that scan."""
@@ -46,8 +46,8 @@ class MatchingTrace:
         self._arrivals.pop(id(message), None)
 
     def _aligned(self, begin_ns: int) -> None:
-        if self._tracer is None or not self._tracer.is_on:
-            return
-        self._tracer.align(begin_ns, time.monotonic_ns())
+        if self._tracer is None or not self._tracer.is_on or lives_in_virtual_time():
+            return  # workers live in wall time
+        self._tracer.align(begin_ns, _transport.now_ns())
         for worker, number, pass_begin_ns, pass_end_ns in self._matcher.passes():
             self._tracer.run_pass(pass_begin_ns, pass_end_ns, worker, number)

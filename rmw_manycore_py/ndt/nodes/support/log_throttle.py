@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import re
-import time
 from collections.abc import Callable
+
+from rmw_manycore_py.ndt.nodes.support.steady import steady_s
 
 REPEAT_S = 1.0
 NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")  # messages that only differ in numbers count as equal
@@ -20,7 +21,7 @@ class LogThrottle:
 
     def is_due(self, message: str) -> bool:
         """Return whether a message may be logged again; if so, count it as logged."""
-        now_s = time.monotonic()
+        now_s = steady_s()
         self._logged_s = {k: t for k, t in self._logged_s.items() if now_s - t < self._repeat_s}
         trouble = NUMBER.sub("", message)
         is_due = trouble not in self._logged_s

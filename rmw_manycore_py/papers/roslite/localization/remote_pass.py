@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import queue
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
+from rmw_manycore_py.ndt.nodes.support.steady import steady_s
 
 
 @dataclass(frozen=True)
@@ -56,11 +56,13 @@ class RemotePass:
         self._number += 1
         self._ask(self._scan_ns, self._number, pose)
         found: dict[int, NDArray[np.float64]] = {}
-        deadline_s = time.monotonic() + self._timeout_s
+        deadline_s = steady_s() + self._timeout_s
         while len(found) < self._parts:
             try:
-                part = self._arrived.get(timeout=max(deadline_s - time.monotonic(), 0.0))
+                part = self._arrived.get(timeout=max(deadline_s - steady_s(), 0.0))
             except queue.Empty:
+                if steady_s() < deadline_s:  # virtual time has not passed
+                    continue
                 raise ManycoreError(
                     f"pass {self._number}: {len(found)} of {self._parts} derivatives answered in "
                     f"{self._timeout_s:g} s; the scan is left out"

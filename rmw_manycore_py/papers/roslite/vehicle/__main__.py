@@ -24,6 +24,7 @@ from rmw_manycore_py.ndt.messages.conversions import nanoseconds, pose_of, stamp
 from rmw_manycore_py.ndt.messages.point_cloud import encode
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
 from rmw_manycore_py.ndt.nodes.support.running import run_node
+from rmw_manycore_py.ndt.nodes.support.steady import steady_s
 from rmw_manycore_py.papers.roslite.laws.lanes import Place
 from rmw_manycore_py.papers.roslite.messages import LATCHED, waypoint_messages
 from rmw_manycore_py.papers.roslite.vehicle.course import LIDAR, Course, sensor_pose
@@ -66,7 +67,7 @@ class Vehicle(Node):
         self._log = DriveLog()
         self._is_answered = False
         self._is_reported = False
-        self._moved_s = time.monotonic()
+        self._moved_s = steady_s()
         self._advertise()
         self._subscribe()
         self.create_timer(STEP_S, self._step)
@@ -99,7 +100,7 @@ class Vehicle(Node):
         self._log.commanded(nanoseconds(message.header.stamp), now_ns)
         if self._p.drives:
             twist = message.twist
-            self._plant.command(time.monotonic(), twist.linear.x, twist.angular.z)
+            self._plant.command(steady_s(), twist.linear.x, twist.angular.z)
 
     def _on_alignment(self, message: Any) -> None:
         self._is_answered |= not self._p.drives
@@ -112,7 +113,7 @@ class Vehicle(Node):
 
     def _step(self) -> None:
         """Advance by the elapsed time, since timers may be late."""
-        now_s = time.monotonic()
+        now_s = steady_s()
         step_s = now_s - self._moved_s
         self._plant.advance(now_s, step_s)
         self._log.driven_m += abs(self._plant.speed_m_s) * step_s

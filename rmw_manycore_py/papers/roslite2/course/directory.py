@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 import shutil
 from dataclasses import dataclass
@@ -22,6 +23,16 @@ from rmw_manycore_py.papers.roslite2.laws.trajectory import Trajectory
 from rmw_manycore_py.papers.roslite2.laws.wheelchair import MAX_SPEED_M_S
 
 MAP, TRAJECTORY, STREETS, MAPFILE = "map.npz", "trajectory.csv", "streets.npz", "whill.yaml"
+VIRTUAL_MAPFILE = "whill_virtual.yaml"
+# The laptop as a node, for virtual time, in which there is no bridge to it. It is another computer:
+# it has a cluster that no node uses.
+LAPTOP = """\
+  whill_laptop:
+    module: rmw_manycore_py.papers.roslite2.laptop
+    cluster: 5
+    core: 1
+    ends_run: true
+"""
 WHEEL_BASE_M = 0.45
 MAP_VOXEL_M = 0.2
 MAPPING_STEP_M = 3.0
@@ -49,6 +60,9 @@ def write_course(directory: Path, course: Course, mapfile: Path) -> None:
     else:
         (directory / STREETS).unlink(missing_ok=True)
     shutil.copyfile(mapfile, directory / MAPFILE)
+    # Without workers, whose time virtual time would not count.
+    alone = re.sub(r"^    workers: .*\n", "", mapfile.read_text(), flags=re.MULTILINE)
+    (directory / VIRTUAL_MAPFILE).write_text(alone + LAPTOP)
 
 
 def read_course(directory: Path) -> Course:

@@ -16,6 +16,7 @@ from tier4_external_api_msgs.msg import Heartbeat
 
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, perturbed
 from rmw_manycore_py.ndt.messages.conversions import pose_with_covariance, stamp_of
+from rmw_manycore_py.ndt.nodes.support.steady import steady_s
 from rmw_manycore_py.papers.roslite2.laptop import topics
 from rmw_manycore_py.papers.roslite2.laptop.drive_log import STANDING_M_S
 from rmw_manycore_py.papers.roslite2.laptop.plant import Plant
@@ -37,7 +38,7 @@ class Operator:
         self._plant = plant
         self._newest_kinematics_s = newest_kinematics_s
         self._generator = np.random.default_rng(3)
-        self._moved_s = time.monotonic()  # last motion of the vehicle
+        self._moved_s = steady_s()  # last motion of the vehicle
         self._done_s: dict[str, float] = {}  # time of each last action
         self._heartbeat = node.create_publisher(Heartbeat, topics.HEARTBEAT, 1)
         self._engage = node.create_publisher(Engage, topics.ENGAGE, 1)
@@ -62,9 +63,9 @@ class Operator:
         if self._is_due("engage", ENGAGE_S):
             self._engage.publish(Engage(stamp=stamp, engage=True))
         if abs(self._plant.speed_m_s) > STANDING_M_S:
-            self._moved_s = time.monotonic()
+            self._moved_s = steady_s()
             return
-        is_stuck = time.monotonic() - self._moved_s > STUCK_S
+        is_stuck = steady_s() - self._moved_s > STUCK_S
         is_wanted = is_stuck or not self.sees_kinematics
         is_heard = self._pose.get_subscription_count() > 0
         if is_wanted and is_heard and self._is_due("pose", INITIAL_POSE_S):
@@ -75,7 +76,7 @@ class Operator:
 
     def _is_due(self, what: str, period_s: float) -> bool:
         """Return whether an action may be repeated; if so, count it as done."""
-        now_s = time.monotonic()
+        now_s = steady_s()
         is_due = now_s - self._done_s.get(what, -np.inf) >= period_s
         if is_due:
             self._done_s[what] = now_s

@@ -19,27 +19,17 @@ from rclpy.signals import SignalHandlerOptions
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.papers.roslite2.course.directory import Course
 from rmw_manycore_py.papers.roslite2.laptop import topics
-from rmw_manycore_py.papers.roslite2.laptop.drive_log import (
-    STANDING_M_S,
-    Command,
-    DriveLog,
-    Incident,
-    Injected,
-    Moment,
-)
+from rmw_manycore_py.papers.roslite2.laptop.drive_log import DriveLog, Incident, Injected
 from rmw_manycore_py.papers.roslite2.laptop.faults import STOP_S, Fault, Kind
+from rmw_manycore_py.papers.roslite2.laptop.laptop import Laptop
 from rmw_manycore_py.papers.roslite2.laptop.lidar_process import LidarProcess
-from rmw_manycore_py.papers.roslite2.laptop.observer import Observer
-from rmw_manycore_py.papers.roslite2.laptop.operator import Operator
-from rmw_manycore_py.papers.roslite2.laptop.plant import Plant, PlantOptions
+from rmw_manycore_py.papers.roslite2.laptop.plant import Plant
 from rmw_manycore_py.papers.roslite2.laptop.stack import Stack, pid_of
-from rmw_manycore_py.papers.roslite2.laptop.wheelchair import Wheelchair
 from rmw_manycore_py.process.cpu_time import tree_cpu_s
 from rmw_manycore_py.process.spinning import spin_once
 
 TURN_S = 0.1  # period of the supervising loop
 CPU_NOTE_S = 1.0  # rarely, since this process's CPU time is measured, too
-ARRIVED_M = 0.5
 GIVE_UP_S = 60.0  # time standing before the end
 
 
@@ -62,17 +52,11 @@ class Drive:
     """Wheelchair, operator and observer in one node, and the loop that spins it."""
 
     def __init__(self, course: Course, options: DriveOptions, log: DriveLog, stack: Stack | None):
-        self._course, self._options, self._log, self._stack = course, options, log, stack
-        first = course.trajectory.pose(0)
-        self._plant = Plant(PlantOptions(), first.x_m, first.y_m, first.yaw_rad)
-        self._along_m = course.trajectory.along_m()
+        self._options, self._log, self._stack = options, log, stack
         self._node: Node = rclpy.create_node("whill_laptop")
         self._lidar = LidarProcess(options.course, options.seed)
-        self._observer = Observer(self._node, log)
-        self._wheelchair = Wheelchair(self._node, self._plant, self._look, self._heard)
-        self._operator = Operator(self._node, self._plant, lambda: self._observer.kinematics_s)
+        self._laptop = Laptop(self._node, course, log, self._look)
         self._due = sorted(options.faults, key=lambda fault: fault.after_s)
-        self._moved_s = time.monotonic()  # last motion of the vehicle
         self._cpu_noted_s = 0.0
 
     def run(self, report: Callable[[DriveLog], None]) -> None:
@@ -81,8 +65,8 @@ class Drive:
         :raises ManycoreError: if the vehicle does not start, or stops for good.
         """
         self._lidar.wait_until_ready()
-        self._spin_until(self._is_moving, self._options.timeout_s, report)
-        if not self._is_moving():
+        self._spin_until(lambda: self._laptop.is_moving, self._options.timeout_s, report)
+        if not self._laptop.is_moving:
             raise ManycoreError(self._reason_for_standing())
         start_s = time.monotonic()
         before_s, packets = self._cpu_s(), self._packets()
@@ -109,20 +93,7 @@ class Drive:
                 report(self._log)
 
     def _turn(self) -> None:
-        plant, trajectory = self._plant, self._course.trajectory
-        nearest = trajectory.nearest(plant.x_m, plant.y_m)
-        self._log.moments.append(
-            Moment(
-                time.time(),
-                plant.x_m,
-                plant.y_m,
-                plant.speed_m_s,
-                float(self._along_m[nearest]),
-                trajectory.lateral_error_m(plant.x_m, plant.y_m),
-            )
-        )
-        if abs(plant.speed_m_s) > STANDING_M_S:
-            self._moved_s = time.monotonic()
+        self._laptop.note()
         if self._stack is not None:
             self._stack.check()
             if time.monotonic() - self._cpu_noted_s >= CPU_NOTE_S:
@@ -133,34 +104,24 @@ class Drive:
             self._inject(self._due.pop(0))
 
     def _look(self, stamp_ns: int, plant: Plant) -> None:
-        self._observer.sent(stamp_ns)
         self._lidar.look(stamp_ns, plant.x_m, plant.y_m, plant.yaw_rad)
-
-    def _heard(self, command: Command) -> None:
-        self._log.commands.append(command)
-        self._observer.on_command(command.time_s)
-
-    def _is_moving(self) -> bool:
-        return abs(self._plant.speed_m_s) > STANDING_M_S
 
     def _is_over(self, start_s: float) -> bool:
         """Return whether the vehicle has arrived; raise ManycoreError if it stands for good."""
-        if self._is_moving():
-            return False
-        now_s = time.monotonic()
-        last = self._course.trajectory.pose(len(self._course.trajectory) - 1)
-        left_m = ((self._plant.x_m - last.x_m) ** 2 + (self._plant.y_m - last.y_m) ** 2) ** 0.5
-        self._log.is_finished = left_m < ARRIVED_M
-        if not self._log.is_finished and now_s - max(start_s, self._moved_s) > GIVE_UP_S:
-            raise ManycoreError(f"the vehicle stands, {left_m:.0f} m before the end of the course")
-        return self._log.is_finished
+        laptop = self._laptop
+        has_arrived = laptop.has_arrived()
+        if not has_arrived and min(laptop.stood_s, time.monotonic() - start_s) > GIVE_UP_S:
+            raise ManycoreError(
+                f"the vehicle stands, {laptop.left_m:.0f} m before the end of the course"
+            )
+        return has_arrived
 
     def _inject(self, fault: Fault) -> None:
         now_s = time.time()
         self._log.incidents.append(Incident(now_s, str(fault)))
         self._log.injected.append(Injected(now_s, fault.target, str(fault)))
         if fault.kind is Kind.SILENCE:
-            self._wheelchair.stopped.add(fault.target)
+            self._laptop.wheelchair.stopped.add(fault.target)
             return
         pid = pid_of(self._stack, fault.target)
         if fault.kind is Kind.KILL:
@@ -195,11 +156,11 @@ class Drive:
                 f"{waited}: nothing publishes {topics.CMD_VEL}; start the stack first, in the same "
                 f"ROS_DOMAIN_ID: `manycore run {mapfile}`, or give --run"
             )
-        if not self._operator.pointed:
+        if not self._laptop.operator.pointed:
             return (
                 f"{waited}: {topics.INITIAL_POSE} has no subscription, so no initial pose was sent"
             )
-        if not self._operator.sees_kinematics:
+        if not self._laptop.operator.sees_kinematics:
             return (
                 f"{waited}: no {topics.KINEMATICS} after the initial pose; the log of "
                 "pose_initializer_node and ndt_scan_matcher says why"

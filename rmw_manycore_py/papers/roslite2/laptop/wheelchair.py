@@ -14,6 +14,7 @@ from sensor_msgs.msg import Imu
 from whill_msgs.msg import ModelCr2State
 
 from rmw_manycore_py.ndt.messages.conversions import stamp_of
+from rmw_manycore_py.ndt.nodes.support.steady import steady_s
 from rmw_manycore_py.papers.roslite2.laptop import topics
 from rmw_manycore_py.papers.roslite2.laptop.drive_log import Command
 from rmw_manycore_py.papers.roslite2.laptop.plant import Plant
@@ -40,7 +41,7 @@ class Wheelchair:
         self._heard = heard
         self.stopped: set[str] = set()  # stopped sensors, a subset of SENSORS
         self._steps = 0
-        self._moved_s = time.monotonic()
+        self._moved_s = steady_s()
         self._generator = np.random.default_rng(7)
         self._imu = node.create_publisher(Imu, topics.IMU, 10)
         self._state = node.create_publisher(ModelCr2State, topics.STATE, 10)
@@ -49,12 +50,12 @@ class Wheelchair:
 
     def _on_command(self, message: Any) -> None:
         command = Command(time.time(), message.linear.x, message.angular.z)
-        self._plant.command(time.monotonic(), command.speed_m_s, command.yaw_rate_rad_s)
+        self._plant.command(steady_s(), command.speed_m_s, command.yaw_rate_rad_s)
         self._heard(command)
 
     def _step(self) -> None:
         """Advance by the elapsed time, since timers may be late."""
-        now_s = time.monotonic()
+        now_s = steady_s()
         self._plant.advance(now_s, now_s - self._moved_s)
         self._moved_s = now_s
         stamp_ns = time.time_ns()
