@@ -40,7 +40,7 @@ def test_tools_show_virtual_time_and_do_not_disturb_it(
     wait_until(lambda: "count: 3" in manycore("topic", "info", "/chatter"), "tools listen")
     for _ in range(3):
         manycore("step", "--for", "0.5")
-    rate.wait_for(r'"min_s": 0\.1\d*, "max_s": 0\.1')
+    rate.wait_for(r'"min_s": 0\.(1|0999999).*"max_s": 0\.(1|0999999)')
     assert recorder.stop() == 0
     with Recording(bag) as recording:
         times = [message.recorded_ns - START_NS for message in recording.messages({"/chatter"})]
