@@ -13,9 +13,9 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, NoReturn
 
 from rmw_manycore_hook import plain_environment
 from rmw_manycore_program import own_program
@@ -106,8 +106,12 @@ class Process:
                 stderr=self._errors,
                 preexec_fn=None if ties_itself else dies_with_this_process(),
             )
-        self._timer = threading.Timer(timeout_s, self._process.kill)
-        self._timer.start()
+        self._timer = self._killed_after(timeout_s)
+
+    def give(self, timeout_s: float) -> None:
+        """Let the process live for this long from now, whatever its timeout was."""
+        self._timer.cancel()
+        self._timer = self._killed_after(timeout_s)
 
     @property
     def pid(self) -> int:
@@ -123,15 +127,19 @@ class Process:
         self.finish()
 
     def next_line(self) -> str:
-        """Return the next line of output; "" after its end."""
+        """Return the next line of output; raise ManycoreError after its end."""
         assert self._process.stdout is not None
-        return self._process.stdout.readline()
+        return self._process.stdout.readline() or self._fail()
 
     def send_line(self, line: str) -> None:
-        """Write a line to the process's input."""
+        """Write a line to the process's input; raise ManycoreError if it has ended."""
+        self.raise_if_failed()
         assert self._process.stdin is not None
-        self._process.stdin.write(f"{line}\n")
-        self._process.stdin.flush()
+        try:
+            self._process.stdin.write(f"{line}\n")
+            self._process.stdin.flush()
+        except BrokenPipeError:
+            self._fail()
 
     def release(self) -> None:
         """Close the process's input, which some programs wait for."""
@@ -155,8 +163,7 @@ class Process:
     def raise_if_failed(self) -> None:
         """Raise ManycoreError if the process has ended early."""
         if self._process.poll() is not None:
-            self.finish()
-            raise ManycoreError(f"{self._name}: {self._process.args!r} has ended early")
+            self._fail()
 
     def interrupt(self) -> None:
         """Send SIGINT."""
@@ -171,10 +178,20 @@ class Process:
         for stream in (self._process.stdin, self._process.stdout, self._errors):
             _close(stream)
 
+    def _killed_after(self, timeout_s: float) -> threading.Timer:
+        timer = threading.Timer(timeout_s, self._process.kill)
+        timer.start()
+        return timer
+
+    def _fail(self) -> NoReturn:
+        self.finish()
+        raise ManycoreError(f"{self._name}: {self._process.args!r} has ended early")
+
 
 def _close(stream: IO[str] | None) -> None:
     if stream is not None:
-        stream.close()
+        with suppress(BrokenPipeError):  # of what the process did not read
+            stream.close()
 
 
 class Session:

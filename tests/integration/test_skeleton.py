@@ -16,7 +16,8 @@ from rmw_manycore_py.bench.idle import wait_until_quiet
 from rmw_manycore_py.bench.scale.skeleton import skeleton_of
 from rmw_manycore_py.bench.scale.skeleton_run import SkeletonRun
 from rmw_manycore_py.bench.session import Session, usable_cpus
-from support.samples.profiles import pipeline
+from rmw_manycore_py.errors import ManycoreError
+from support.samples.profiles import queued
 
 pytestmark = pytest.mark.integration
 
@@ -32,14 +33,9 @@ Start = Callable[[int], SkeletonRun]
 def start(request: pytest.FixtureRequest) -> Iterator[Start]:
     """Start the nodes of the pipeline, with queues of a depth."""
     middleware: Middleware = request.param
-    profile = pipeline()
 
     def started(depth: int) -> SkeletonRun:
-        deep = {"queue_depth": depth}
-        inputs = tuple(one.model_copy(update=deep) for one in profile.subscriptions)
-        outputs = tuple(one.model_copy(update=deep) for one in profile.publishers)
-        changed = pipeline(subscriptions=inputs, publishers=outputs)
-        return SkeletonRun(session, skeleton_of(changed))
+        return SkeletonRun(session, skeleton_of(queued(depth)))
 
     with Session(middleware, usable_cpus()) as session:
         yield started
@@ -63,6 +59,13 @@ def test_messages_that_a_stopped_node_does_not_take_are_lost(start: Start) -> No
     os.kill(nodes.pids[FILTER], signal.SIGCONT)
     nodes.settle(timeout_s=2)
     assert nodes.finish().lost > 0
+
+
+def test_a_killed_node_is_named(start: Start) -> None:
+    nodes = start(DEEP)
+    os.kill(nodes.pids[FILTER], signal.SIGKILL)
+    with pytest.raises(ManycoreError, match=r"name=/filter(.|\n)*exit status -9"):
+        nodes.settle()
 
 
 def test_a_process_is_not_quiet_while_others_keep_it_from_running() -> None:

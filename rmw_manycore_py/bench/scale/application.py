@@ -81,12 +81,13 @@ def _measure(
         start_s = time.monotonic()
         nodes = SkeletonRun(session, part)
         results = [found(UP, "s", [time.monotonic() - start_s])]
-        results += _rest(nodes, found, REST_S * max(run.share, 0.2))
-        if middleware.is_manycore:
+        tools = TOOLS if middleware.is_manycore else {}
+        with nodes.named_if_dead():
+            results += _rest(nodes, found, REST_S * max(run.share, 0.2))
             results += [
-                found(tool, "ms", _tool_ms(run, session, words)) for tool, words in TOOLS.items()
+                found(tool, "ms", _tool_ms(run, session, words)) for tool, words in tools.items()
             ]
-        return results + _exchange(nodes, found, part, duration_s * max(run.share, 0.1))
+            return results + _exchange(nodes, found, part, duration_s * max(run.share, 0.1))
 
 
 def _rest(nodes: SkeletonRun, found: Found, window_s: float) -> list[Result]:
@@ -114,9 +115,12 @@ def _tool_ms(run: Run, session: Session, words: Sequence[str]) -> list[float]:
 
     def call() -> None:
         command = own_program("rmw_manycore_py.cli", *words, "--platform", session.platform)
-        done = subprocess.run(
-            command, capture_output=True, text=True, timeout=TIMEOUT_S, cwd=directory
-        )
+        try:
+            done = subprocess.run(
+                command, capture_output=True, text=True, timeout=TIMEOUT_S, cwd=directory
+            )
+        except subprocess.TimeoutExpired as error:
+            raise ManycoreError(f"manycore {' '.join(words)} did not end") from error
         if done.returncode:
             raise ManycoreError(f"manycore {' '.join(words)}: {done.stderr}")
 

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 
 from rmw_manycore_py.bench.idle import wait_until_quiet
 from rmw_manycore_py.bench.scale.skeleton import Skeleton
-from rmw_manycore_py.bench.session import Process, Session
+from rmw_manycore_py.bench.session import TIMEOUT_S, Process, Session
 from rmw_manycore_py.errors import ManycoreError
 
 SETTLE_S = 30.0
@@ -36,7 +36,11 @@ class Exchanged:
 
 
 class SkeletonRun:
-    """Nodes that have matched all their topics, and publish when told to."""
+    """Nodes that have matched all their topics, and publish when told to.
+
+    Nodes that hang are killed: the session's time is for their start, and TIMEOUT_S for what is
+    done with them before they publish, and for all after it.
+    """
 
     def __init__(self, session: Session, skeleton: Skeleton) -> None:
         """Start the nodes, and return once all are ready.
@@ -51,6 +55,7 @@ class SkeletonRun:
         ready = sum(_is_ready(node) for node in self._nodes)
         if ready < len(self._nodes):
             raise ManycoreError(f"{ready} of {len(self._nodes)} nodes are ready in time")
+        self._give(TIMEOUT_S)
 
     @property
     def pids(self) -> list[int]:
@@ -64,6 +69,7 @@ class SkeletonRun:
 
     def publish(self, duration_s: float) -> None:
         """Publish at the rates of the skeleton."""
+        self._give(duration_s + TIMEOUT_S)
         self._send("publish")
         time.sleep(duration_s)
         self._send("stop")
@@ -85,6 +91,20 @@ class SkeletonRun:
             sum(one["due"] for one in found),
             [age_ns for one in found for age_ns in one["samples_ns"]],
         )
+
+    @contextmanager
+    def named_if_dead(self) -> Iterator[None]:
+        """Turn what the end of a process leads to in the block into ManycoreError."""
+        try:
+            yield
+        except OSError as error:  # of its files in /proc
+            for node in self._nodes:
+                node.raise_if_failed()
+            raise ManycoreError(f"a process has ended: {error}") from error
+
+    def _give(self, timeout_s: float) -> None:
+        for node in self._nodes:
+            node.give(timeout_s)
 
     def _have_all(self) -> bool:
         self._send("count")

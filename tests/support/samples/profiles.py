@@ -80,6 +80,16 @@ def pipeline(**fields: Any) -> Profile:
     return Profile(**{**values, **fields})
 
 
+def queued(depth: int) -> Profile:
+    """Return the pipeline with queues of a depth."""
+    deep = {"queue_depth": depth}
+    usual = pipeline()
+    return pipeline(
+        subscriptions=tuple(one.model_copy(update=deep) for one in usual.subscriptions),
+        publishers=tuple(one.model_copy(update=deep) for one in usual.publishers),
+    )
+
+
 def sites(*clusters: int, host_cpus: tuple[int, ...] = (0, 1, 2)) -> Sites:
     """Return the places of the pipeline's nodes."""
     places = zip(NODES, clusters or (1, 1, 1), host_cpus, strict=True)
