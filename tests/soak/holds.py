@@ -69,6 +69,8 @@ class Holds:
                 if role not in self._victims:
                     self._victims[role] = self._started(role)
             time.sleep(random.uniform(0, 2 * LIFE_S))
+            for program in (self._lasting, *self._victims.values()):
+                _raise_if_ended(program)
             self._kill(random.choice(ROLES))
 
     def rest(self) -> Holdings:
@@ -104,6 +106,7 @@ class Holds:
 
     def _kill(self, role: Role) -> None:
         program = self._victims.pop(role)
+        _raise_if_ended(program)
         program.kill()
         self.kills += 1
         self._takes_of_dead += _takes(program)
@@ -112,6 +115,10 @@ class Holds:
 
 def _takes(program: Program) -> int:
     return TOLD * program.lines.count("took")
+
+
+def _raise_if_ended(program: Program) -> None:
+    assert program.is_running(), f"ended by itself: {program}"
 
 
 def _raise_if_wrong(program: Program) -> None:
