@@ -13,8 +13,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <future>
+#include <string>
 #include <system_error>
-#include <thread>
 
 #include "messages.hpp"
 #include "node_role.hpp"
@@ -175,20 +176,19 @@ TEST_CASE("a look at a platform that is being created waits until it is whole") 
   const TestPlatform platform;
   const PlatformPaths paths = platform.paths();
   std::atomic<pid_t> looking{0};
-  std::string refused;
-  std::thread reader;
+  std::future<std::string> refused;
   under_join_lock(paths, [&] {
     REQUIRE(mkdir(paths.directory.c_str(), 0700) == 0);
-    reader = std::thread([&] {
+    refused = std::async(std::launch::async, [&] {
       looking = gettid();
-      refused = refusal_of([&] { look_at(paths); }).text;
+      std::string text = refusal_of([&] { look_at(paths); }).text;
       looking = 0;
+      return text;
     });
     wait_until("it waits", [&] { return looking != 0 && is_asleep(looking); });
     ensure_platform(paths, host_profile(), {});
   });
-  reader.join();
-  CHECK(refused == "");
+  CHECK(refused.get() == "");
   clean_platform(platform.name());
 }
 
