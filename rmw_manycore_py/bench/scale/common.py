@@ -47,13 +47,16 @@ def along(
     places: Iterable[int],
     axis: str,
     measure: Callable[[int], list[Result]],
+    fewest: int = 1,
 ) -> list[Result]:
     """Measure a contender, QUESTION: NAME, at the points of its curve in ascending order.
 
     The curve ends where the contender fails: larger points would fail as well, each after minutes.
+
+    :param fewest: points that are measured in a quick run, too.
     """
     results: list[Result] = []
-    for count in _drawn(run, places) if run.wants(contender) else ():
+    for count in _drawn(run, places, fewest) if run.wants(contender) else ():
         place = at_count(contender, count, axis)
         run.note(place)
         try:
@@ -64,10 +67,10 @@ def along(
     return results
 
 
-def _drawn(run: Run, curve: Iterable[int]) -> Sequence[int]:
+def _drawn(run: Run, curve: Iterable[int], fewest: int) -> Sequence[int]:
     """Return the points of a curve that this run measures."""
     places = tuple(curve)
-    return places[: len(places) // 2] if run.share <= QUICK_SHARE else places
+    return places[: max(len(places) // 2, fewest)] if run.share <= QUICK_SHARE else places
 
 
 def on_curve(

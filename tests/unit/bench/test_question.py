@@ -19,7 +19,7 @@ from rmw_manycore_py.bench import (
     throughput,
 )
 from rmw_manycore_py.bench.question import Run
-from rmw_manycore_py.bench.scale.common import along, on_curve
+from rmw_manycore_py.bench.scale.common import QUICK_SHARE, along, on_curve
 from rmw_manycore_py.bench.summary import Result
 from rmw_manycore_py.errors import ManycoreError
 
@@ -86,6 +86,22 @@ def test_a_curve_ends_where_its_contender_fails() -> None:
     results = along(run, "trip: peer", (1, 2, 4, 8), "nodes", measure)
     assert [result.contender for result in results] == ["peer, 1 nodes", "peer, 2 nodes"]
     assert run.failures == ["trip: peer, 4 nodes: no answer"]
+
+
+def test_a_quick_run_measures_half_of_a_curve_or_as_many_points_as_it_needs() -> None:
+    def measured(*places: int, fewest: int) -> list[int]:
+        found: list[int] = []
+
+        def measure(count: int) -> list[Result]:
+            found.append(count)
+            return []
+
+        along(Run(cpus=(0, 1), share=QUICK_SHARE), "peer", places, "nodes", measure, fewest)
+        return found
+
+    assert measured(1, 2, 4, 8, fewest=1) == [1, 2]
+    assert measured(1, 2, 4, fewest=2) == [1, 2]
+    assert measured(1, fewest=2) == [1]
 
 
 def test_only_some_questions_are_put_to_a_contender() -> None:
