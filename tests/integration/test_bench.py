@@ -262,7 +262,7 @@ def test_the_skeleton_of_a_profile_is_measured(tmp_path: Path) -> None:
     rows = run_bench("autoware", str(tmp_path / "profile.json"), "--only", "manycore")["results"]
     assert {row["at"] for row in rows} == {1, 3}
     medians = {row["question"]: row["median"] for row in rows if row["at"] == 3}
-    assert len(medians) == 13
+    assert len(medians) == 14
     assert medians["messages lost"] == 0
     silent = {"messages lost", "wake-ups of all at rest", "CPU time of all at rest"}
     assert all(median > 0 for question, median in medians.items() if question not in silent)

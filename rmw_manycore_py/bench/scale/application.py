@@ -31,6 +31,7 @@ DESCRIPTORS = "file descriptors of a node"
 THREADS = "threads of a node"
 PRIVATE = "private memory of a node"
 PUBLISHED = "messages published, of those at the profile's rates"
+DUE = "messages due, by what was published"
 LOST = "messages lost"
 AGE = "age of a message when it is taken"
 CPU = "CPU time of all while they publish"
@@ -40,8 +41,8 @@ TOOLS = {
     "`manycore view`, a picture": ("view", "--once", "--period", "0.1", "-o", "view.svg"),
 }
 
-REST_S = 5.0
 FEWEST = 2  # points: the first nodes alone may have no messages for each other
+REST_S = 5.0
 TOOL_RUNS = 3
 
 Found = Callable[[str, str, Sequence[float]], Result]
@@ -66,8 +67,11 @@ def question(skeleton: Skeleton, duration_s: float) -> Question:
         Goal(DESCRIPTORS, own, "within", 40, statistic="largest"),
         Goal(LOST, own, "within", 0),
     )
-    rate = f"{skeleton.rate_hz:.0f} messages and {skeleton.bytes_per_s / 1e6:.1f} MB per second"
-    placement = f"nodes on both in turn, over {CLUSTERS} clusters; {rate}"
+    rates = (
+        f"{skeleton.rate_hz:.0f} messages, {skeleton.deliveries_hz:.0f} deliveries"
+        f" and {skeleton.bytes_per_s / 1e6:.1f} MB per second"
+    )
+    placement = f"nodes on both in turn, over {CLUSTERS} clusters; {rates}"
     return Question("application", measure, goals, placement)
 
 
@@ -143,6 +147,7 @@ def _exchange(
     return [
         *([found(PUBLISHED, "%", [100 * exchanged.published / wanted])] if wanted else []),
         *([found(AGE, "us", in_us(exchanged.ages_ns))] if exchanged.ages_ns else []),
+        found(DUE, "count", [exchanged.due]),
         found(LOST, "count", [exchanged.lost]),
         found(CPU, "ms/s", [used_ns / 1e6 / duration_s]),
     ]

@@ -56,6 +56,12 @@ class Skeleton:
         return sum(output.rate_hz for node in self.nodes for output in node.outputs)
 
     @property
+    def deliveries_hz(self) -> float:
+        """Return the messages that are due to subscriptions per second."""
+        readers = self._readers()
+        return sum(one.rate_hz * readers[one.topic] for node in self.nodes for one in node.outputs)
+
+    @property
     def bytes_per_s(self) -> float:
         """Return the bytes that are published per second."""
         return sum(one.rate_hz * one.size_bytes for node in self.nodes for one in node.outputs)
@@ -66,7 +72,7 @@ class Skeleton:
 
     def arguments(self) -> list[dict[str, str]]:
         """Return the arguments of the program skeleton_node for each node."""
-        readers = Counter(one.topic for node in self.nodes for one in node.inputs)
+        readers = self._readers()
         writers = Counter(one.topic for node in self.nodes for one in node.outputs)
         return [
             {
@@ -78,6 +84,9 @@ class Skeleton:
             }
             for node in self.nodes
         ]
+
+    def _readers(self) -> Counter[str]:
+        return Counter(one.topic for node in self.nodes for one in node.inputs)
 
 
 def _words(one: Output, readers: int) -> str:

@@ -51,6 +51,14 @@ def test_the_rate_is_of_counts_or_else_of_intervals() -> None:
     assert outputs(publisher("/silent"))[0].rate_hz == 0
 
 
+def test_a_message_is_delivered_to_each_subscription_of_its_topic() -> None:
+    both = tuple(Subscription(node=node, topic="/image", queue_depth=1) for node in (1, 2))
+    skeleton = skeleton_of(pipeline(subscriptions=both))
+    assert (skeleton.rate_hz, skeleton.deliveries_hz) == (20, 20)
+    assert skeleton.first(2).deliveries_hz == 10
+    assert skeleton.first(1).deliveries_hz == 0
+
+
 def test_sizes_are_assumed_where_the_profile_has_none() -> None:
     known, cloud = outputs(publisher("/points", size_bytes=steady(7)), publisher("/points"))
     assert (known.size_bytes, cloud.size_bytes) == (7, assumed_bytes("/lidar/points"))
