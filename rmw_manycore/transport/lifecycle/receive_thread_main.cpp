@@ -24,6 +24,11 @@ void serve(const std::string & platform, uint32_t id, Daemon & daemon) {
   Registry registry(paths);
   Cluster & cluster = registry.clusters().at(id);
   Movers movers(registry, id);
+  // First: the thread that keeps the lifeline inherits it.
+  const int host_cpu = registry.header().profile.host_cpu_of_receive_thread[id - 1];
+  if (host_cpu >= 0) {
+    pin_to_cpu(host_cpu);
+  }
   const std::optional<HeldLifeline> lifeline =
     registry.lifelines().try_hold(receive_thread_line + id);
   if (!lifeline) {
@@ -34,10 +39,6 @@ void serve(const std::string & platform, uint32_t id, Daemon & daemon) {
   const bool replaces = cluster.header().receive_thread_pid.exchange(getpid()) != 0;
   prctl(PR_SET_NAME, ("manycore_rt_" + std::to_string(id)).c_str());
   prctl(PR_SET_PTRACER, PR_SET_PTRACER_ANY);  // the timekeeper sees by its threads that it waits
-  const int host_cpu = registry.header().profile.host_cpu_of_receive_thread[id - 1];
-  if (host_cpu >= 0) {
-    pin_to_cpu(host_cpu);
-  }
   // Before the movers start, which inherit it. The limit may be the priority of the nodes.
   const int priority = registry.header().profile.priority_of_receive_thread[id - 1];
   if (priority > 0 && !run_in_real_time(priority) && !run_in_real_time(priority - 1)) {
