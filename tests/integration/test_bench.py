@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import subprocess
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -266,47 +264,6 @@ def test_the_skeleton_of_a_profile_is_measured(tmp_path: Path) -> None:
     assert medians["messages lost"] == 0
     silent = {"messages lost", "wake-ups of all at rest", "CPU time of all at rest"}
     assert all(median > 0 for question, median in medians.items() if question not in silent)
-
-
-@pytest.mark.long
-def test_a_node_that_dies_costs_no_smaller_application_its_figures(tmp_path: Path) -> None:
-    save(queued(100), tmp_path / "profile.json")
-    words = ("autoware", tmp_path / "profile.json", *only("manycore"), "--quick", "--json")
-    command = [str(word) for word in manycore_command("bench", *words)]
-    with subprocess.Popen(
-        command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    ) as bench:
-        try:
-            wait_until(lambda: has_tool_beside(3, bench.pid), "a tool sees 3 nodes")
-            os.kill(nodes_of(bench.pid)[-1], signal.SIGKILL)
-            output, errors = bench.communicate(timeout=LONG_S)
-        finally:
-            bench.kill()
-    assert bench.returncode == 1
-    report = json.loads(output)
-    assert {row["at"] for row in report["results"]} == {1}
-    (failure,) = report["failures"]
-    assert "3 nodes" in failure
-    assert "name=/sink" in failure
-    assert "Traceback" not in errors
-
-
-def commands_of(pid: int) -> dict[int, str]:
-    """Return the command lines of the children of a process."""
-    found: dict[int, str] = {}
-    for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split():
-        with suppress(FileNotFoundError, ProcessLookupError):  # it has ended in the meantime
-            found[int(child)] = Path(f"/proc/{child}/cmdline").read_text()
-    return found
-
-
-def nodes_of(bench: int) -> list[int]:
-    return [pid for pid, command in commands_of(bench).items() if "skeleton_node" in command]
-
-
-def has_tool_beside(nodes: int, bench: int) -> bool:
-    commands = commands_of(bench).values()
-    return len(nodes_of(bench)) == nodes and any("rmw_manycore_py.cli" in one for one in commands)
 
 
 @pytest.mark.long
