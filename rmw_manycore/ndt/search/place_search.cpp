@@ -14,7 +14,6 @@
 namespace manycore::ndt {
 namespace {
 
-constexpr double turn_rad = 6.283185307179586;
 constexpr uint32_t tile_level = 2;
 constexpr uint32_t sectors = 16;
 constexpr uint32_t roots_at_once = 32;

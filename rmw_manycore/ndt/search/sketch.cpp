@@ -7,7 +7,6 @@
 namespace manycore::ndt {
 namespace {
 
-constexpr double turn_rad = 6.283185307179586;
 /// After each of these many points the sum is compared with what is needed.
 constexpr size_t stretch = 32;
 

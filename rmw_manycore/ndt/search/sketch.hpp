@@ -9,6 +9,8 @@
 
 namespace manycore::ndt {
 
+inline constexpr double turn_rad = 6.283185307179586;
+
 /// A cell of a scan, as seen from the column that the sensor is in.
 struct Ray {
   int32_t column;   ///< distance of the columns' indices
