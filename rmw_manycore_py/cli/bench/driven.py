@@ -22,9 +22,12 @@ from rmw_manycore_py.papers.roslite2.course.synthetic import synthetic_course
 
 @contextmanager
 def driven(mapfile: Path) -> Iterator[Path]:
-    """Yield a mapfile that runs by itself: this one, unless it is `ros_lite` or `whill`."""
-    is_in_a_course = (mapfile.parent / VIRTUAL_MAPFILE).exists()
-    if is_in_a_course or mapfile.name not in (AFTER, MAPFILE):
+    """Yield a mapfile that runs by itself: this one, unless it is named `ros_lite` or `whill`."""
+    with_laptop = mapfile.parent / VIRTUAL_MAPFILE
+    if mapfile.name == MAPFILE and with_laptop.exists():
+        yield with_laptop
+        return
+    if mapfile.name not in (AFTER, MAPFILE):
         yield mapfile
         return
     with TemporaryDirectory(prefix="driven-") as name:

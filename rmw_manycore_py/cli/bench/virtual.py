@@ -24,7 +24,6 @@ from rmw_manycore_py.errors import EXIT_FAILURE
     "virtual",
     epilog=examples(
         "manycore bench virtual autoware_reference --runs 100 --duration 10",
-        "manycore bench virtual whill --duration 60 --kill ekf_localizer@30",
         "manycore bench virtual map.yaml --profile app.profile.json --platform coolidge",
     ),
 )

@@ -31,7 +31,7 @@ from rmw_manycore_py.ndt.nodes.support.steady import steady_s
 VARIANCES = (1.0, 1.0, 0.01, 0.01, 0.01, 0.2)  # m^2, rad^2
 AT_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)  # x, y, z, quaternion
 GNSS_VARIANCES = (*VARIANCES[:5], 10.0)  # GNSS does not measure the heading
-ANYWHERE_M = 1000.0  # standard deviation without a pose: the matcher searches the map
+ANYWHERE_M = 1e6  # standard deviation without a pose; maps in UTM or MGRS are far from 0
 RETRY_S = 1.0
 ANSWER_TIMEOUT_S = 60.0  # 200 alignments of 300 ms: slow host, large scans
 UNINITIALIZED, INITIALIZING, INITIALIZED = "UNINITIALIZED", "INITIALIZING", "INITIALIZED"

@@ -25,6 +25,7 @@ from rmw_manycore_py.ndt.trust.sketch import Sketch
 
 YAWS = 360
 KEPT_PERMILLE = 850  # fewest points of a place that is aligned, relative to the best one
+COMPARED = 256  # places of any heading, of which the wanted ones are taken
 FOLLOWED = 16  # places that are aligned with the whole scan
 SLICE_S = 0.2  # of a search, after which scans may be matched
 AROUND_YAW_RAD = np.radians(45.0)  # of a region without any_yaw
@@ -146,8 +147,8 @@ def _promising(
             yield True
         if not descends:
             places.order_roots()
-    found = [sketch.pose(*place[:4]) for place in places.found(FOLLOWED)]
-    return [T for T in found if region.has_yaw(T)]
+    found = (sketch.pose(*place[:4]) for place in places.found(COMPARED))
+    return [T for T in found if region.has_yaw(T)][:FOLLOWED]
 
 
 def _is_upright(T: Pose, start: Pose) -> bool:
