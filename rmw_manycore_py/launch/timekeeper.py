@@ -39,7 +39,7 @@ class VirtualTime:
 
     :param factor: virtual seconds per second of CPU time of a callback; 0: callbacks take none.
     :param model: of the time that they take instead.
-    :param kills: nodes that are killed, each after so many virtual seconds.
+    :param kills: nodes to kill, each after a number of virtual seconds.
     """
 
     factor: float

@@ -104,8 +104,8 @@ def test_a_node_is_killed_from_outside_at_a_time(mapfile, log_of, manycore) -> N
     log = log_of(file, 2, "--virtual", "--instant", "--kill", "victim@1.25")
     births = [line.split()[1] for line in log["victim"] if line.startswith("born")]
     assert births == [f"{START_NS}", f"{START_NS + 5 * NS_PER_S // 4}"]
-    assert "no node 'nobody' in this run" in manycore(
-        "run", file, "--virtual", "--kill", "nobody@1", status=1
+    assert "no node 'missing' in this run" in manycore(
+        "run", file, "--virtual", "--kill", "missing@1", status=1
     )
 
 
@@ -132,7 +132,7 @@ def test_a_shell_starts_a_node_again_and_again(mapfile, log_of) -> None:
 
 
 def test_who_lives_in_virtual_time_and_who_does_not(mapfile, log_of) -> None:
-    """A tool without ROS does. A child of fork() does not, and nobody when time is over."""
+    """A tool without ROS does; a child of fork() does not, nor any process when time is over."""
     log = log_of(mapfile("parent", "stayer", "tool"), 1.5)
     assert log["parent"] == ["child True"]
     assert log["stayer"] == ["slept True"]

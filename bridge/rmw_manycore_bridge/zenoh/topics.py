@@ -236,7 +236,7 @@ class ZenohPublisher:
         """Nothing: in the domain, the bridge is the publisher."""
 
     def resume(self) -> None:
-        """Nothing: what nobody wanted is not missed."""
+        """Nothing: messages without subscribers are not lost."""
 
     def publish(self, address: int, size: int, sent_ns: int, publisher: bytes, number: int) -> None:
         """Publish with the source timestamp of the platform's publisher."""

@@ -5,6 +5,8 @@
 #include <memory>
 #include <new>
 
+#include "ndt/common/alignment.hpp"
+
 namespace manycore::ndt {
 
 /// Floats aligned to 64 bytes. The storage grows and never shrinks; its content is lost when it
@@ -13,7 +15,7 @@ class AlignedFloats {
 public:
   float * with_room_for(size_t count) {
     if (count > capacity_) {
-      const size_t bytes = (count * sizeof(float) + 63) / 64 * 64;
+      const size_t bytes = align_up(count * sizeof(float));
       floats_.reset(static_cast<float *>(std::aligned_alloc(64, bytes)));
       if (!floats_) {
         capacity_ = 0;

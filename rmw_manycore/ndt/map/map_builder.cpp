@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "ndt/common/alignment.hpp"
 #include "ndt/map/grid.hpp"
 #include "ndt/map/neighbours.hpp"
 #include "ndt/map/table.hpp"
@@ -72,8 +73,6 @@ std::vector<PlacedVoxel> voxels_of(
   }
   return voxels;
 }
-
-uint64_t align_up(uint64_t offset) { return (offset + 63) / 64 * 64; }
 
 MapHeader lay_out(const Grid & grid, Search search, size_t voxels, const NeighbourLists & seen) {
   MapHeader h{};

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "ndt/common/alignment.hpp"
 #include "platform/error.hpp"
 
 namespace manycore::ndt {
@@ -21,8 +22,6 @@ constexpr uint32_t roots_at_once = 32;
 constexpr double same_m = 3;
 constexpr double same_rad = 0.3;
 
-uint64_t align_up(uint64_t offset) { return (offset + 63) / 64 * 64; }
-
 struct Square {
   uint16_t x;  ///< in squares
   uint16_t y;
@@ -33,13 +32,11 @@ std::vector<Square> squares_of(const SearchMap & map, const SearchOptions & opti
   std::vector<Square> squares;
   const SearchMapHeader & h = map.header();
   constexpr double half_diagonal_m = root_cells * search_cell_m * 0.7072;
-  const auto middle_m = [&h](size_t axis, uint32_t first) {
-    return (h.first_cell[axis] + static_cast<int32_t>(first) + 0.5 * root_cells) * search_cell_m;
-  };
   for (uint32_t y = 0; y < static_cast<uint32_t>(h.cells[1]); y += root_cells) {
     for (uint32_t x = 0; x < static_cast<uint32_t>(h.cells[0]); x += root_cells) {
-      const double away_m =
-        std::hypot(middle_m(0, x) - options.centre_m[0], middle_m(1, y) - options.centre_m[1]);
+      const double away_m = std::hypot(
+        map.middle_m(0, x, root_cells) - options.centre_m[0],
+        map.middle_m(1, y, root_cells) - options.centre_m[1]);
       if (map.floor(root_level, x, y).is_known() && away_m <= options.radius_m + half_diagonal_m) {
         squares.push_back(
           {static_cast<uint16_t>(x / root_cells), static_cast<uint16_t>(y / root_cells)});
@@ -254,12 +251,9 @@ FoundPlace PlaceSearch::place_of(uint64_t kept) const {
   const auto x = static_cast<uint32_t>(number % width);
   const auto y = static_cast<uint32_t>(number / width % depth);
   const auto yaw = static_cast<double>(number / width / depth);
-  const auto middle_m = [&h](size_t axis, uint32_t column) {
-    return (h.first_cell[axis] + static_cast<int32_t>(column) + 0.5) * search_cell_m;
-  };
   return {
-    middle_m(0, x), middle_m(1, y), map_.ground_m(x, y), turn_rad * yaw / head().yaws,
-    points_of(kept)};
+    map_.middle_m(0, x, 1), map_.middle_m(1, y, 1), map_.ground_m(x, y),
+    turn_rad * yaw / head().yaws, points_of(kept)};
 }
 
 }  // namespace manycore::ndt

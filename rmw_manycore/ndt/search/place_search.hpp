@@ -20,7 +20,7 @@ struct SearchOptions {
   uint32_t yaws;           ///< directions that are compared
   uint32_t kept_permille;  ///< places with fewer of the best one's points are not kept
   double centre_m[2];      ///< of the places
-  double radius_m;         ///< of the places; infinity: the whole map
+  double radius_m;         ///< of the places, with the root squares that it touches; infinity: all
 };
 
 /// A place that stands out from those around it.
@@ -34,7 +34,7 @@ struct FoundPlace {
 
 enum class SearchPhase : uint32_t { bound, descend };
 
-/// Head of a search's memory. Whoever shares the memory shares the work.
+/// Head of a search's memory. Processes that share the memory share the work.
 struct SearchHead {
   uint64_t id;  ///< unique in the process that laid it out
   uint32_t points;
@@ -47,7 +47,7 @@ struct SearchHead {
   uint64_t order_offset;
   uint64_t tiles_offset;
   uint64_t size_bytes;
-  alignas(64) std::atomic<uint32_t> next;  ///< root that nobody has begun
+  alignas(64) std::atomic<uint32_t> next;  ///< first root that is not begun
   alignas(64) std::atomic<uint32_t> best;  ///< points of the best place so far
 };
 

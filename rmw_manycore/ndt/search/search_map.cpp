@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "ndt/common/alignment.hpp"
 #include "ndt/common/matrix.hpp"
 #include "platform/error.hpp"
 
@@ -212,13 +213,13 @@ SearchMapHeader lay_out(const VoxelMap & map) {
                                      " columns of 1 m, expected at most " +
                                      std::to_string(max_columns));
   }
-  h.columns_offset = (sizeof(SearchMapHeader) + 63) / 64 * 64;
+  h.columns_offset = align_up(sizeof(SearchMapHeader));
   uint64_t end = h.columns_offset + search_levels * count * sizeof(uint64_t);
   for (uint32_t level = 0; level < search_levels; ++level) {
     h.floors_offset[level] = end;
     end += (count >> (2 * level)) * sizeof(Floor);
   }
-  h.ground_offset = (end + 63) / 64 * 64;
+  h.ground_offset = align_up(end);
   h.size_bytes = h.ground_offset + count * sizeof(float);
   return h;
 }
@@ -243,6 +244,10 @@ Floor SearchMap::floor(uint32_t level, uint32_t x, uint32_t y) const noexcept {
   const uint32_t width = static_cast<uint32_t>(header().cells[0]) >> level;
   return (
     &memory_.at<const Floor>(header().floors_offset[level]))[(y >> level) * width + (x >> level)];
+}
+
+double SearchMap::middle_m(size_t axis, uint32_t first, uint32_t columns) const noexcept {
+  return (header().first_cell[axis] + static_cast<int32_t>(first) + 0.5 * columns) * search_cell_m;
 }
 
 double SearchMap::ground_m(uint32_t x, uint32_t y) const noexcept {

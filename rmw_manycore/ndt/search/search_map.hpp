@@ -59,6 +59,8 @@ public:
   const uint64_t * columns(uint32_t level) const noexcept;
   /// Ground of the node of a level that begins at a column.
   Floor floor(uint32_t level, uint32_t x, uint32_t y) const noexcept;
+  /// Coordinate [m, map frame] of the middle of some columns, from one on.
+  double middle_m(size_t axis, uint32_t first, uint32_t columns) const noexcept;
   /// Height of the ground [m, map frame] of a column that has one.
   double ground_m(uint32_t x, uint32_t y) const noexcept;
 

@@ -13,7 +13,7 @@ namespace manycore {
 void Timekeeper::kill_due() {
   const uint32_t rank = kills_.begin()->second;
   kills_.erase(kills_.begin());
-  for (const auto & [pid, process] : programs_[rank].processes) {
+  for (const auto & [pid, process] : programs_.at(rank).processes) {
     kill(pid, SIGKILL);
     pollfd ended{process.pidfd.get(), POLLIN, 0};
     constexpr int at_most_ms = 2000;
