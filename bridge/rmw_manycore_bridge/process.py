@@ -21,12 +21,14 @@ from rmw_manycore_bridge.outside.interface import Joining, Outside
 from rmw_manycore_bridge.outside.loop import Loop, Mover
 from rmw_manycore_bridge.place import Place
 from rmw_manycore_bridge.sides import OwnPublishers, Sides
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.process.readiness import report_ready
 from rmw_manycore_py.process.signals import signal_inbox
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import Direction, Route
 
-_LEAVING_S = 4.5  # `manycore run` insists after 5 s
+_STOPPING_S = 4.5  # `manycore run` insists after 5 s
+_LEAVING_S = 3.0
 
 
 class BridgeProcess:
@@ -108,18 +110,21 @@ class BridgeProcess:
                         self._graphs_changed()
             finally:  # an I/O error of the table ends the process; the runner restarts it
                 # An engine that never returns is shown with the call that waits for it.
-                faulthandler.dump_traceback_later(_LEAVING_S)
+                faulthandler.dump_traceback_later(_STOPPING_S)
                 for loop in self._loops:
                     loop.stop()
             try:
                 for loop in self._loops:
                     loop.close_movers()
+                exit_status = _report(self._loops)
+                # Nothing is left to forward; Fast DDS at times never returns from leaving a domain.
+                _transport.exit_after(_LEAVING_S, exit_status)
                 for loop in reversed(self._loops):
                     loop.close()
             finally:
                 faulthandler.cancel_dump_traceback_later()
             os.close(self._failed)
-            return _report(self._loops)
+            return exit_status
 
 
 def mover_class(route: Route) -> Callable[..., Mover]:

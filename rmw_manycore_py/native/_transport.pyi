@@ -299,6 +299,12 @@ class TopicConfiguration:
 def now_ns() -> int:
     """Return the clock of timeouts [ns]: CLOCK_MONOTONIC, or virtual time in a run that has it."""
 
+def exit_after(delay_s: float, status: int) -> None:
+    """End this process after a time, if it has not ended by then, as os._exit() does.
+
+    Also while a call into a library keeps all Python threads waiting.
+    """
+
 def platforms() -> list[str]:
     """Return the names of this user's platforms, dead or alive."""
 

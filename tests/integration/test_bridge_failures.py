@@ -18,8 +18,9 @@ from rmw_manycore_bridge.time_slice import SLICE_NS, time_slice_ns
 from rmw_manycore_py.platform.topology import HostCpu, as_host_cpu
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import arranged
-from support import IS_MANYCORE, MAPFILES, TIMEOUT_S, wait_until
+from support import IS_MANYCORE, MAPFILES, TESTS, TIMEOUT_S, wait_until
 from support.nodes.bridging import OUTSIDE, Bridge
+from support.nodes.speakers import say
 from support.processes.commands import example_command, manycore_command
 from support.processes.domains import domain_of
 from support.processes.inspection import has_receive_threads
@@ -75,6 +76,20 @@ def test_a_second_signal_ends_it(bridge) -> None:
         process.signal(signal.SIGINT)
         process.signal(signal.SIGTERM)
         assert process.wait() in (0, -signal.SIGINT, -signal.SIGTERM), process
+
+
+def test_it_leaves_though_dds_never_does(bridge, tmp_path) -> None:
+    preload = tmp_path / "no_leaving.so"
+    source = TESTS / "programs" / "no_leaving.c"
+    compiler = os.environ.get("CC", "cc")
+    subprocess.run([compiler, "-shared", "-fPIC", "-o", preload, source], check=True)
+    plan = Plan(bridge.platform, arranged([bridge.route("outward", "/chatter")], 1))
+    process = bridge.run_unforked(plan, "outward", LD_PRELOAD=str(preload))
+    bridge.inside(say, "/chatter", {}, 0.1)
+    wait_until(lambda: bridge.row("outward", "/chatter").get("state") == "ready", "it is up")
+    process.signal(signal.SIGINT)
+    process.wait_for("^rmw_destroy_node 0x")
+    assert process.wait() == 0
 
 
 def test_the_bridge_ends_with_the_nodes(start, tmp_path, platform) -> None:

@@ -10,10 +10,12 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <utility>
 
 #include "platform/error.hpp"
+#include "platform/late_exit.hpp"
 #include "python/context.hpp"
 #include "python/transport/bindings.hpp"
 #include "python/transport/publisher.hpp"
@@ -184,6 +186,12 @@ private:
 
 void bind_process(nb::module_ & module) {
   module.def("now_ns", &qos_now_ns);
+  module.def(
+    "exit_after",
+    [](double delay_s, int status) {
+      exit_after(std::chrono::nanoseconds(static_cast<int64_t>(delay_s * ns_per_s)), status);
+    },
+    nb::arg("delay_s"), nb::arg("status"));
   const nb::class_<BoundNode> node(module, "Node", nb::is_weak_referenceable());
   nb::class_<BoundProcess> bound(module, "Process");
   bound

@@ -58,10 +58,10 @@ class Bridge:
         command = forked_node("rmw_manycore_bridge", *_words(plan, way, lane))
         return self._start(command, **OUTSIDE, **env)
 
-    def run_unforked(self, plan: Plan, way: Direction) -> Program:
+    def run_unforked(self, plan: Plan, way: Direction, **env: str) -> Program:
         """Start one process in its own interpreter: all of its threads are the bridge's."""
         command = [sys.executable, "-m", "rmw_manycore_bridge", *_words(plan, way, 0)]
-        return self._start(command, **OUTSIDE)
+        return self._start(command, **OUTSIDE, **env)
 
     def inside(self, function: Callable[..., None], *arguments: Any, **env: str) -> Program:
         """Start a node on the platform."""
