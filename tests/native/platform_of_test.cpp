@@ -265,6 +265,11 @@ SubscriptionHeader & Inspection::header_of(const Subscription & subscription) {
 }
 
 void Inspection::wait_until_swept(uint32_t left) {
-  wait_until("the closed endpoints are freed", [&] { return closing_endpoints() == left; });
+  const auto is_in_hand = [](const Hand & hand) { return hand.block.load() != 0; };
+  const Hand * const hands = registry_.header().hands;
+  wait_until("the closed endpoints are freed", [&] {
+    return closing_endpoints() == left &&
+           std::none_of(hands + receive_thread_line + 1, hands + configurator_line, is_in_hand);
+  });
   const Registry::Lock lock(registry_);
 }

@@ -78,8 +78,9 @@ public:
   manycore::SubscriptionHeader & header_of(const manycore::Subscription & subscription);
   /// Endpoints that are closed, but whose memory is not freed yet.
   uint32_t closing_endpoints() { return registry_.header().closing_count; }
-  /// Returns once only `left` closed endpoints are not freed, and the hold of the registry lock in
-  /// which that came about is over. A reaper closes and frees in several holds.
+  /// Returns once only `left` closed endpoints are not freed, no receive thread has a block in its
+  /// hand, and the hold of the registry lock in which that came about is over. A reaper closes and
+  /// frees in several holds.
   void wait_until_swept(uint32_t left = 0);
 
 private:

@@ -51,6 +51,21 @@ TEST_CASE("a process that is killed once all its contexts are shut down does not
   CHECK(killed_after({"begin_context", "end_context", "begin_context"}));
 }
 
+TEST_CASE("a death that no reaper has recorded is recorded as the platform is removed") {
+  const TestPlatform platform;
+  auto process = platform.join(1);
+  Inspection inspection(platform);
+  const Standstill reaper(platform, 1);
+  Node node(platform, 1);
+  const pid_t killed = node.pid();
+  node.kill();
+  process.reset();
+  REQUIRE_FALSE(platform.exists());
+  const std::vector<Death> deaths = Graph(inspection.registry()).deaths();
+  REQUIRE(deaths.size() == 1);
+  CHECK(deaths[0].pid == killed);
+}
+
 TEST_CASE("memory that a killed process had charged is given back") {
   Survivor f;
   const ClusterHeader & cluster = f.inspection.registry().clusters().at(1).header();

@@ -254,6 +254,21 @@ bool is_in_use(Registry & registry) {
   return false;
 }
 
+/// Records the deaths that no reaper has recorded yet: of two that reap one process, the second
+/// may remove the platform while the first is midway.
+void note_all_deaths(Registry & registry) {
+  try {
+    const Registry::Lock lock(registry, Registry::Lock::short_wait_ns);
+    for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
+      if (is_dead(registry, slot)) {
+        note_death(registry, slot);
+      }
+    }
+  } catch (const Error &) {
+    // damaged, or held by a stopped process: nothing of the platform stays
+  }
+}
+
 bool remove_if_unused(Registry & registry) {
   const PlatformPaths & paths = registry.paths();
   // Without lifelines no process can join: the other files are of no use to those that still run.
@@ -262,6 +277,7 @@ bool remove_if_unused(Registry & registry) {
     (!registry.lifelines().is_file(paths.alive()) || is_in_use(registry))) {
     return false;
   }
+  note_all_deaths(registry);
   remove_platform(paths);
   return true;
 }
