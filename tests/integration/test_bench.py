@@ -83,7 +83,7 @@ def test_a_contender_that_does_not_exist_is_an_error() -> None:
         ("rclpy", *RCLPY),
         ("startup", *STARTUP),
         ("memory", *OWN),
-        pytest.param(("ros-lite", *SPLIT), marks=pytest.mark.long),
+        pytest.param(("ros-lite", *SPLIT), marks=pytest.mark.stress),
         pytest.param(("ros-lite", *PIPELINE), marks=pytest.mark.stress),
     ],
     ids=[
@@ -223,7 +223,7 @@ def test_publishing_beside_a_deep_history_is_measured() -> None:
     assert all(row["median"] > 0 for row in rows)
 
 
-@pytest.mark.long
+@pytest.mark.stress
 def test_composed_nodes_are_measured_with_each_executor() -> None:
     rows = run_bench("scale", "--only", "next in its process: manycore")["results"]
     assert len(rows) == 2 * 4 * 2
@@ -231,6 +231,7 @@ def test_composed_nodes_are_measured_with_each_executor() -> None:
     assert all(row["median"] > 0 for row in rows)
 
 
+@pytest.mark.long
 def test_nodes_of_two_processes_are_measured_with_each_executor() -> None:
     rows = run_bench("scale", "--only", "to one of the other process: manycore")["results"]
     assert {row["at"] for row in rows} == {2, 10}
@@ -238,7 +239,7 @@ def test_nodes_of_two_processes_are_measured_with_each_executor() -> None:
     assert all(row["median"] > 0 for row in rows)
 
 
-@pytest.mark.long
+@pytest.mark.stress
 def test_nodes_do_not_wake_each_other() -> None:
     def sleep_on() -> bool:
         report = run_bench("scale", "--only", "until each topic has its subscription: manycore")
@@ -328,7 +329,7 @@ def test_images_that_reach_another_host_are_counted() -> None:
     assert all(0 < row["median"] <= 100 for row in rows)
 
 
-@pytest.mark.long
+@pytest.mark.stress
 def test_the_reference_system_is_measured_and_loses_nothing_where_all_is_kept() -> None:
     parts = only("checked: manycore", "untouched, cycles 0: manycore")
     rows = {row["question"]: row for row in run_bench("reference", *parts)["results"]}

@@ -67,7 +67,14 @@ class Place:
         return program.output
 
 
-@pytest.fixture(params=["checkout", "empty folder", "hostile folder", "hostile PYTHONPATH"])
+@pytest.fixture(
+    params=[
+        pytest.param("checkout", marks=pytest.mark.stress),
+        "empty folder",
+        "hostile folder",
+        pytest.param("hostile PYTHONPATH", marks=pytest.mark.stress),
+    ]
+)
 def place(
     request: pytest.FixtureRequest, tmp_path: Path, installation: Installation, start: Start
 ) -> Place:

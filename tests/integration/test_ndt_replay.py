@@ -272,7 +272,7 @@ def echo_of_poses(start: Any, platform: str) -> Program:
     return echo
 
 
-@pytest.mark.long
+@pytest.mark.stress
 def test_an_inward_bridge_that_stops_for_a_while(start, platform, tmp_path):
     """At 15 m/s beside other load, poses are right or missing, and the loop recovers.
 

@@ -85,13 +85,15 @@ def edges_on(platform: str) -> set[tuple[str, str, str, str]]:
 @pytest.mark.parametrize(
     "variant",
     [
-        installed("ros_lite.map"),
-        with_split(installed("ros_lite.map"), 2, 3),
-        installed("ros_lite_before.yaml"),
+        pytest.param(installed("ros_lite.map"), id="after", marks=pytest.mark.long),
+        pytest.param(
+            with_split(installed("ros_lite.map"), 2, 3),
+            id="two derivatives, two searches and a merge",
+            marks=pytest.mark.stress,
+        ),
+        pytest.param(installed("ros_lite_before.yaml"), id="before", marks=pytest.mark.stress),
     ],
-    ids=["after", "two derivatives, two searches and a merge", "before"],
 )
-@pytest.mark.long
 def test_a_vehicle_is_driven(
     start: Start, platform: str, map_path: Path, tmp_path: Path, variant: dict[str, Any]
 ) -> None:
