@@ -5,8 +5,8 @@
     scripts/build_wheel.py [PYTHON...]   default: the running interpreter
 
 For each interpreter: builds in isolation, lets auditwheel determine the oldest usable glibc,
-installs the wheel into a fresh environment with only its own programs on PATH, and runs the demo
-there. Wheels that pass are moved to dist/.
+installs the wheel into a fresh environment with only its own programs on PATH, imports all modules
+there, takes a message without a copy, and runs the demo. Wheels that pass are moved to dist/.
 """
 
 from __future__ import annotations
@@ -46,6 +46,20 @@ for package in (rmw_manycore_py, rmw_manycore_bridge):
             importlib.import_module(module.name)
             count += 1
 print(f"{count} modules imported")
+"""
+# Arrays in place need a Python that lays out `array.array` as expected; another one copies.
+TAKE_IN_PLACE = """
+import array, rclpy
+from sensor_msgs.msg import Image
+rclpy.init()
+node = rclpy.create_node("taker")
+taken = []
+node.create_subscription(Image, "image", taken.append, 1)
+node.create_publisher(Image, "image", 1).publish(Image(data=bytes(1 << 20)))
+rclpy.spin_once(node, timeout_sec=30)
+assert taken, "no message arrived"
+assert type(taken[0].data) is not array.array, "the message was copied"
+print("a message was taken without a copy")
 """
 
 
@@ -97,6 +111,8 @@ def check(python: str, wheel: Path, directory: Path) -> None:
     everything = f"{wheel}[{EXTRAS}]"
     run(programs / "pip", "install", "--quiet", everything, env=own)
     print(run(programs / "python", "-c", IMPORT_EVERYTHING, env=own, cwd=directory), end="")
+    in_place = own | {"RMW_IMPLEMENTATION": "rmw_manycore"}
+    print(run(programs / "python", "-c", TAKE_IN_PLACE, env=in_place, cwd=directory), end="")
     for words in (["demo"], ["run", "talker_listener", "--duration", "3"]):
         output = run(programs / "manycore", *words, env=own, cwd=directory)
         if "I heard: 'Hello World" not in output:
