@@ -6,6 +6,7 @@
 #   scripts/setup.sh system [PKG..] system packages only, including PKG
 #   scripts/setup.sh extra NAME     requirements of an extra of pyproject.toml, into .venv
 #   scripts/setup.sh tests          additional requirements of the tests
+# The last two create .venv first where it is missing.
 # Shows its progress; all output is in build/setup-*.log.
 set -eu
 cd "$(dirname "$0")/.."
@@ -121,16 +122,26 @@ install_for_tests() {
   touch .venv/tests
 }
 
-if [ "${1:-}" = system ]; then
-  shift
-  install_packages $(missing_packages) "$@"
-elif [ "${1:-}" = extra ]; then
-  install_extra "$2"
-elif [ "${1:-}" = tests ]; then
-  install_for_tests
-else
+set_up() {
   [ "$PYTHON" = python3 ] || check_python
   install_packages $(missing_packages)
   check_python
   install_checkout
+}
+
+ensure_venv() {
+  [ -x .venv/bin/python ] || set_up
+}
+
+if [ "${1:-}" = system ]; then
+  shift
+  install_packages $(missing_packages) "$@"
+elif [ "${1:-}" = extra ]; then
+  ensure_venv
+  install_extra "$2"
+elif [ "${1:-}" = tests ]; then
+  ensure_venv
+  install_for_tests
+else
+  set_up
 fi
