@@ -62,6 +62,15 @@ def test_the_doctor_shows_it(directory, platform):
     assert "chmod" not in manycore(link, platform, "doctor").stdout
 
 
+def test_the_doctor_leaves_a_directory_for_all_users_as_it_is(directory, platform):
+    directory.chmod(0o1777)
+    output = manycore(directory, platform, "doctor").stdout
+    assert "chmod" not in output
+    run_quoted(output, "mkdir")
+    chosen = directory / "manycore"
+    assert f"ok       platform directory: {chosen}" in manycore(chosen, platform, "doctor").stdout
+
+
 @pytest.mark.parametrize("words", [("status",), ("topic", "list"), ("clean",), ("doctor",)])
 def test_one_that_is_not_there_is_refused(directory, platform, words):
     missing = directory / "is" / "missing"

@@ -17,8 +17,10 @@ from rmw_manycore_distribution import NAME, RCLPY_VERSION
 from rmw_manycore_program import own_program
 from rmw_manycore_py.cli.doctor.built import check_built
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.process.parent_death import dies_with_this_process
 from rmw_manycore_py.ros.ament import prefixes
+from rmw_manycore_py.ros.domain import ros_domain
 
 MIN_PYTHON = (3, 10)
 ROS_PACKAGE = "ros-rclpy"
@@ -44,6 +46,7 @@ def check_install() -> Iterator[Finding]:
     yield _hook()
     yield _substitution()
     yield _selected()
+    yield check_domain()
     yield from check_built()
 
 
@@ -138,3 +141,11 @@ def _selected() -> Finding:
     found = f"RMW_IMPLEMENTATION is {selected or 'not set'}"
     advice = 'for nodes started by hand from this shell: eval "$(manycore env)"'
     return Finding("this shell", Verdict.OK, found, "" if is_ours else advice)
+
+
+def check_domain() -> Finding:
+    """Return whether ROS_DOMAIN_ID is a domain."""
+    try:
+        return Finding("ROS domain", Verdict.OK, str(ros_domain()))
+    except ManycoreError as error:
+        return Finding("ROS domain", Verdict.FAILURE, str(error), "`unset ROS_DOMAIN_ID` for 0")

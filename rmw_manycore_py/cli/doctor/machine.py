@@ -87,10 +87,19 @@ def _user_directory() -> Finding:
     mode = stat.S_IMODE(status.st_mode)
     is_own = stat.S_ISDIR(status.st_mode) and status.st_uid == os.geteuid()
     found = f"{path}, owner {status.st_uid}, mode {mode:o}"
-    advice = (
-        f"`chmod 700 {shlex.quote(str(path))}`" if is_own else "remove it (or ask its owner to)"
-    )
+    advice = _advice(path, is_own, bool(mode & stat.S_ISVTX))
     return judged("platform directory", is_own and mode == 0o700, found, advice)
+
+
+def _advice(path: Path, is_own: bool, is_for_all: bool) -> str:
+    quoted = shlex.quote(str(path))
+    if is_for_all:  # the sticky bit, as of /tmp
+        return f"`mkdir -p -m 700 {quoted}/manycore`, and choose that as MANYCORE_DIRECTORY"
+    if is_own:
+        return f"`chmod 700 {quoted}`"
+    if os.environ.get("MANYCORE_DIRECTORY"):
+        return "choose a directory of this user as MANYCORE_DIRECTORY"
+    return "remove it (or ask its owner to)"
 
 
 def _cpus() -> Finding:

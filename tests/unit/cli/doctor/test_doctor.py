@@ -4,7 +4,7 @@
 import pytest
 
 from rmw_manycore_py.cli.doctor.finding import Verdict, advised, judged
-from rmw_manycore_py.cli.doctor.install import check_ros, judge_probe
+from rmw_manycore_py.cli.doctor.install import check_domain, check_ros, judge_probe
 
 pytestmark = pytest.mark.unit
 
@@ -40,3 +40,11 @@ def test_two_installations_of_ros_are_a_warning(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
     finding = check_ros()
     assert (finding.verdict, "sourced jazzy" in finding.found) == (Verdict.WARNING, True)
+
+
+def test_a_domain_that_is_no_number_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    assert (check_domain().verdict, check_domain().found) == (Verdict.OK, "7")
+    monkeypatch.setenv("ROS_DOMAIN_ID", "abc")
+    finding = check_domain()
+    assert (finding.verdict, "found 'abc'" in finding.found) == (Verdict.FAILURE, True)
