@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -14,10 +13,9 @@ from rosidl_pycommon import convert_camel_case_to_lower_case_underscore
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, DefinitionError, ManycoreError, Problem
 from rmw_manycore_py.interfaces.definition import KINDS, Definition, read_definition
+from rmw_manycore_py.ros.workspace import walk_sources
 
 _SUFFIXES = {*(f".{kind}" for kind in KINDS), ".idl"}
-# As in colcon: directories with such a file are skipped with their subdirectories.
-_IGNORED = ("COLCON_IGNORE", "AMENT_IGNORE")
 # First line of an .idl file converted from a .msg, .srv or .action file beside it.
 _CONVERTED = "// generated from rosidl_adapter/"
 
@@ -102,15 +100,10 @@ def _package_directories(path: Path) -> Iterator[Path]:
         raise ManycoreError(
             f"{path}: expected a directory, found no such directory", EXIT_BAD_INPUT
         )
-    for name, directories, files in os.walk(path):
-        directory = Path(name)
-        if any(ignored in files for ignored in _IGNORED):
-            directories.clear()
-        elif any(_definition_files(directory)):
+    for directory, directories, _ in walk_sources(path):
+        if any(_definition_files(directory)):
             yield directory
             directories.clear()
-        else:
-            directories[:] = sorted(d for d in directories if not d.startswith("."))
 
 
 def _definition_files(directory: Path) -> Iterator[Path]:

@@ -19,6 +19,7 @@ from rmw_manycore_py.mapfile.programs.executables import find_module
 from rmw_manycore_py.mapfile.programs.source import SourceNode, read_source
 from rmw_manycore_py.platform.topology import Topology, profile
 from rmw_manycore_py.ros.names import full_node_name
+from rmw_manycore_py.ros.workspace import walk_sources
 
 _ADVICE = "# Choose the clusters. A node gets the first free core unless 'core' is set."
 _PLAN = "plan: true  # nodes need not be installed for map check and map show; run needs them"
@@ -110,8 +111,8 @@ def _is_launch_file(path: Path) -> bool:
 def _python_files(sources: Iterable[Path]) -> Iterator[Path]:
     for source in sources:
         if source.is_dir():
-            files = sorted(source.rglob("*.py"))
-            yield from (f for f in files if not _is_launch_file(f) and not _is_hidden(f, source))
+            found = sorted(_python_files_in(source))
+            yield from (file for file in found if not _is_launch_file(file))
         elif not source.is_file():
             raise ManycoreError(f"{source}: no such file or directory", EXIT_BAD_INPUT)
         elif source.suffix == ".py" and not _is_launch_file(source):
@@ -121,8 +122,11 @@ def _python_files(sources: Iterable[Path]) -> Iterator[Path]:
             raise ManycoreError(f"{source}: expected {expected}", EXIT_BAD_INPUT)
 
 
-def _is_hidden(file: Path, top: Path) -> bool:
-    return any(part.startswith(".") for part in file.relative_to(top).parts)
+def _python_files_in(top: Path) -> Iterator[Path]:
+    for directory, _, files in walk_sources(top):
+        yield from (
+            directory / name for name in files if name.endswith(".py") and not name.startswith(".")
+        )
 
 
 def _entries_of(file: Path, directory: Path) -> list[_Entry]:

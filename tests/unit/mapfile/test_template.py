@@ -45,6 +45,21 @@ def test_a_template_is_a_valid_mapfile(tmp_path: Path) -> None:
     assert [node.name for node in check(mapfile).nodes] == ["talker", "talker2"]
 
 
+def test_what_tools_made_is_no_source(tmp_path: Path) -> None:
+    write_node(tmp_path / "robot/robot/talker.py", "talker", "publisher")
+    (tmp_path / "robot/setup.py").touch()
+    (tmp_path / "install/COLCON_IGNORE").parent.mkdir()
+    (tmp_path / "install/COLCON_IGNORE").touch()
+    (tmp_path / "env/pyvenv.cfg").parent.mkdir()
+    (tmp_path / "env/pyvenv.cfg").touch()
+    for copies in ("robot/build/lib", "install/robot/lib", "env/lib", "robot/robot.egg-info"):
+        write_node(tmp_path / copies / "robot/talker.py", "talker", "publisher")
+    write_node(tmp_path / "build/listener.py", "listener", "subscription")  # no project's build
+    text = init([tmp_path], tmp_path)
+    scripts = [line.split()[1] for line in text.splitlines() if "script:" in line]
+    assert scripts == ["build/listener.py", "robot/robot/talker.py"]
+
+
 def test_files_of_packages_become_modules(tmp_path: Path) -> None:
     write_node(tmp_path / "app/talker.py", "talker", "publisher")
     (tmp_path / "app/__init__.py").touch()
