@@ -11,7 +11,6 @@ from rmw_manycore_py.advice.application import Application
 from rmw_manycore_py.advice.conflict import conflict_in
 from rmw_manycore_py.advice.constraints import constraints_of
 from rmw_manycore_py.advice.infeasible import InfeasibleError
-from rmw_manycore_py.advice.library import require_library
 from rmw_manycore_py.advice.places import places_of
 from rmw_manycore_py.advice.problem import Clusters, ConstraintKind, Problem
 from rmw_manycore_py.advice.ranking import NOW, Candidate, Ranked, Trial, ranked
@@ -19,10 +18,11 @@ from rmw_manycore_py.advice.rewriting import rewritten
 from rmw_manycore_py.advice.solving import Effort, candidates
 from rmw_manycore_py.advice.weights import Objective
 from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.extras import ORTOOLS, SIMPY, require
 from rmw_manycore_py.mapfile import Mapfile, load_mapfile, resolve
 from rmw_manycore_py.mapfile.placing.moves import RoomError
 from rmw_manycore_py.platform.topology import usable_cpus
-from rmw_manycore_py.prediction import TARGETS, Target, require_simpy
+from rmw_manycore_py.prediction import TARGETS, Target
 from rmw_manycore_py.profile.model import Profile
 
 Report = Callable[[str], None]
@@ -86,8 +86,8 @@ def advise(
     :raises MapfileError: if the mapfile has other problems.
     :raises ManycoreError: for a profile of another application, or if a library is missing.
     """
-    require_library()
-    require_simpy()
+    require(ORTOOLS)
+    require(SIMPY)
     mapfile = load_mapfile(path, text=text)
     application = application_of(mapfile, profile)
     problem = application.problem(request.chain)

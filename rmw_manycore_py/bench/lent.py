@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Sequence
 from functools import partial
 
@@ -12,6 +11,7 @@ from rmw_manycore_py.bench.question import PAYLOADS, Measure, Question, Run
 from rmw_manycore_py.bench.round_trip import in_us
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
+from rmw_manycore_py.extras import ICEORYX2, missing
 
 SIZES = ("64 B", "64 KiB", "1 MiB", "8 MiB")
 WARM_UP = 100
@@ -23,10 +23,9 @@ QUESTIONS = {ASLEEP: "block", SPINNING: "spin"}
 
 def has_iceoryx(run: Run, question: str) -> bool:
     """Return whether iceoryx2 is installed; note it otherwise."""
-    if importlib.util.find_spec(ICEORYX) is None:
-        run.note(f"{question}: without {ICEORYX}; pip install 'rmw-manycore[bench]' adds it")
-        return False
-    return True
+    if text := missing(ICEORYX2):
+        run.note(f"{question}: {text}")
+    return not text
 
 
 def measure(run: Run) -> list[Result]:

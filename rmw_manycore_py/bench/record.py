@@ -13,7 +13,7 @@ from rmw_manycore_py.bench.contenders import INSIDE, MIB
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
-from rmw_manycore_py.recording.mcap_support import require_library
+from rmw_manycore_py.extras import MCAP, require
 
 TOPIC = "/bench"
 SECONDS = 20.0
@@ -40,7 +40,7 @@ STREAMS = (LARGE, MIDDLE, SMALL)
 
 def measure(run: Run) -> list[Result]:
     """Record each stream, and play the recording."""
-    require_library()
+    require(MCAP)
     return [
         result for stream in STREAMS if run.wants(stream.name) for result in _measure(run, stream)
     ]

@@ -24,8 +24,9 @@ from rmw_manycore_py.cli.common.printing import (
     size_text,
 )
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.extras import SIMPY, require
 from rmw_manycore_py.mapfile import load_mapfile, resolve
-from rmw_manycore_py.prediction import Prediction, Target, predict, require_simpy, sites_of
+from rmw_manycore_py.prediction import Prediction, Target, predict, sites_of
 from rmw_manycore_py.prediction.sweep import sweep_of
 from rmw_manycore_py.prediction.target_file import target_named
 from rmw_manycore_py.prediction.words import as_data
@@ -92,7 +93,7 @@ def command(
     Chains, loads, memory, losses and missed periods of a simulated run. Where a platform's
     parameters are not published, the result is a sweep over them.
     """
-    require_simpy()
+    require(SIMPY)
     placement = resolve(load_mapfile(mapfile), to_start=False)
     profile, target = load(profile_path), target_named(platform_name)
     wanted = [tuple(chain.split()) for chain in chains] or None

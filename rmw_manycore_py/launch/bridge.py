@@ -4,10 +4,9 @@
 from __future__ import annotations
 
 from contextlib import closing
-from importlib.util import find_spec
 
 from rmw_manycore_program import own_program
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.extras import ZENOH, require_installed
 from rmw_manycore_py.launch.events import Finished
 from rmw_manycore_py.launch.processes.environment import outside_environment
 from rmw_manycore_py.launch.processes.program import NodeProgram
@@ -54,11 +53,8 @@ def run_bridge(plan: Plan, report: Report) -> int:
 
 
 def _require_engine(plan: Plan) -> None:
-    needs_zenoh = plan.outside.engine in ("zenoh", "hosts")
-    if needs_zenoh and None in map(find_spec, ("zenoh", "xxhash")):
-        raise ManycoreError(
-            "the bridge's engine zenoh is not installed: pip install 'rmw-manycore[zenoh]'"
-        )
+    if plan.outside.engine in ("zenoh", "hosts"):
+        require_installed(ZENOH)
 
 
 def bridge_program(

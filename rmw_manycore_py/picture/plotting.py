@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.extras import MATPLOTLIB, require
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,12 +18,5 @@ def load_figure() -> type[Figure]:
 
     :raises ManycoreError: if matplotlib is not installed; the text has the command to install it.
     """
-    try:
-        from matplotlib import figure
-    except ImportError as error:
-        raise ManycoreError(
-            f"matplotlib cannot be loaded ({error}). Plots need it: "
-            "pip install 'rmw-manycore[bench]', or [ndt], or [trace]"
-        ) from error
-    figure_class: type[Figure] = figure.Figure  # unknown to type checkers without matplotlib
+    figure_class: type[Figure] = require(MATPLOTLIB).Figure
     return figure_class

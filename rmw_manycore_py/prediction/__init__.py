@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.extras import SIMPY, require
 from rmw_manycore_py.prediction.prediction import Prediction
 from rmw_manycore_py.prediction.sites import Site, Sites, sites_of
 from rmw_manycore_py.prediction.target import TARGETS, Target
@@ -36,7 +37,7 @@ def predict(
     :raises ManycoreError: if the sites lack a node of the profile, nothing in it ran, or SimPy is
         not installed.
     """
-    require_simpy()
+    require(SIMPY)
     from rmw_manycore_py.prediction.application import application_of
     from rmw_manycore_py.prediction.attribution import attributed
     from rmw_manycore_py.prediction.outcome import outcome_of
@@ -48,13 +49,3 @@ def predict(
     simulation = Simulation(application, sites, target, seed, is_traced)
     simulation.run(duration_s)
     return outcome_of(simulation, duration_s, chains, is_traced)
-
-
-def require_simpy() -> None:
-    """Raise ManycoreError with install instructions if SimPy is missing."""
-    try:
-        import simpy  # noqa: F401
-    except ImportError as error:
-        raise ManycoreError(
-            f"predictions need the library SimPy ({error}): pip install 'rmw-manycore[predict]'"
-        ) from error

@@ -36,7 +36,7 @@ LAYERS = [
         ".examples",
         ".whole_file",
     ),
-    (".native", "rmw_manycore_executor"),
+    (".extras", ".native", "rmw_manycore_executor"),
     (".bostan", ".process", ".ros", ".trace"),
     (".interfaces", ".platform", ".profile", ".routes"),
     (".mapfile", ".picture", ".transport"),

@@ -11,7 +11,7 @@ import click
 
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, escaped, print_json, print_notices
-from rmw_manycore_py.recording.mcap_support import require_library
+from rmw_manycore_py.extras import MCAP, require
 
 if TYPE_CHECKING:
     from rmw_manycore_py.recording.recording import Recording
@@ -34,7 +34,7 @@ def command(path: Path, names_only: bool, as_json: bool) -> None:
     An MCAP file or a rosbag2 directory. Of an unfinished or damaged file, shows what can be
     read, with a notice.
     """
-    require_library()
+    require(MCAP)
     from rmw_manycore_py.recording.recording import Recording
 
     with Recording(path) as recording:

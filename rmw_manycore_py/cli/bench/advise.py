@@ -9,7 +9,6 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from rmw_manycore_py.advice.library import require_library
 from rmw_manycore_py.bench.advise.contest import Contest, Mapping, contest
 from rmw_manycore_py.bench.machine import machine_header
 from rmw_manycore_py.bench.predict.runs import Plan
@@ -17,8 +16,8 @@ from rmw_manycore_py.cli.bench.options import mapping_runs_options
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.extras import ORTOOLS, SIMPY, require
 from rmw_manycore_py.mapfile.installed import find_mapfile
-from rmw_manycore_py.prediction import require_simpy
 
 GOALS = {"of_median": 0.8, "of_best": 1.05, "of_worst_case": 1 / 3}
 _MEANINGS = {
@@ -57,8 +56,8 @@ def command(
     advised mapping, MAPFILE and random mappings. The first two also run beside a busy loop per
     CPU. A second start goes on where the first ended.
     """
-    require_library()
-    require_simpy()
+    require(ORTOOLS)
+    require(SIMPY)
     path = find_mapfile(mapfile)
     if path is None:
         raise ManycoreError(f"there is no mapfile {mapfile}", EXIT_BAD_INPUT)

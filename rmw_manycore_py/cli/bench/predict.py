@@ -21,8 +21,8 @@ from rmw_manycore_py.cli.bench.options import mapping_runs_options
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.extras import SIMPY, require
 from rmw_manycore_py.mapfile.installed import find_mapfile
-from rmw_manycore_py.prediction import require_simpy
 from rmw_manycore_py.profile.files import load
 
 _PARTS_S = 20.0  # simulated
@@ -69,7 +69,7 @@ def command(
     Records a profile of each MAPFILE, by default of autoware_reference and image_pipeline, runs
     its nodes on random cores and host CPUs, and predicts these runs from the profile.
     """
-    require_simpy()
+    require(SIMPY)
     progress = Console(stderr=True)
     found: dict[str, list[Compared]] = {}
     with progress.status("bench predict") as status:

@@ -14,11 +14,11 @@ import click
 
 from rmw_manycore_py.cli.common.finite_range import FiniteRange
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.extras import SIMPY, require
 from rmw_manycore_py.launch.platform import occupied_cores
 from rmw_manycore_py.launch.run import Mode, Run
 from rmw_manycore_py.launch.timekeeper import PlatformModel, VirtualTime
 from rmw_manycore_py.mapfile import Mapfile, Placement, load_mapfile, resolve
-from rmw_manycore_py.prediction import require_simpy
 from rmw_manycore_py.prediction.target_file import target_named
 from rmw_manycore_py.profile.files import load
 
@@ -126,7 +126,7 @@ def virtual_time(
     if len(names) > 1:
         raise click.UsageError(f"{' and '.join(names)} exclude each other.")
     if profile is not None:
-        require_simpy()
+        require(SIMPY)
         simulated = platform_name or "host"
         target_named(simulated)
         load(profile)

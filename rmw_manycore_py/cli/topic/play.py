@@ -17,7 +17,7 @@ from rmw_manycore_py.cli.topic.selection_options import (
     full_names,
     regex_option,
 )
-from rmw_manycore_py.recording.mcap_support import require_library
+from rmw_manycore_py.extras import MCAP, require
 from rmw_manycore_py.recording.selection import Selection
 from rmw_manycore_py.ros.names import expand
 
@@ -138,7 +138,7 @@ def command(
     Topics are published with their recorded QoS. Keys on a terminal: space pauses, right plays
     the next message while paused, up and down change the rate.
     """
-    require_library()
+    require(MCAP)
     if outside:
         leave_middleware()
     from rmw_manycore_py.cli.topic.playing_session import Settings, play

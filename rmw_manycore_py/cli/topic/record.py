@@ -19,7 +19,7 @@ from rmw_manycore_py.cli.topic.selection_options import (
     nothing_chosen,
     regex_option,
 )
-from rmw_manycore_py.recording.mcap_support import require_library
+from rmw_manycore_py.extras import MCAP, require
 from rmw_manycore_py.recording.selection import Selection
 
 _MAX_CACHE_BYTES = 100 << 20  # default of rosbag2
@@ -116,7 +116,7 @@ def command(
     """
     if not (topics or everything or regex or types):
         raise nothing_chosen()
-    require_library()
+    require(MCAP)
     if outside:
         leave_middleware()
     from rmw_manycore_py.cli.topic.recording_session import Settings, record

@@ -6,7 +6,6 @@ from __future__ import annotations
 import time
 import webbrowser
 from contextlib import closing
-from importlib.util import find_spec
 from pathlib import Path
 
 import click
@@ -16,10 +15,10 @@ from rmw_manycore_py.cli.common.options import examples, number_option, platform
 from rmw_manycore_py.cli.common.output_file import OutputFile, writing
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.view import require_platform
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.extras import WEB_SERVER, require_installed
 from rmw_manycore_py.picture.chip import Chip
 from rmw_manycore_py.platform.monitor.watch import Look, Watch
-from rmw_manycore_py.view.listener import Listener, listen
+from rmw_manycore_py.view.listener import listen
 
 DEFAULT_PORT = 8642
 
@@ -59,7 +58,7 @@ def command(
         _draw(platform, output, period_s)
         return
 
-    _require_web_server()
+    require_installed(WEB_SERVER)
     listener = listen(port)
     # Before the web server is loaded: the browser connects and draws its window meanwhile.
     echo(f"platform {platform}: {listener.link}")
@@ -67,7 +66,9 @@ def command(
     if opens:
         webbrowser.open(listener.link)
     with listener.socket:
-        _serve(platform, listener, period_s)
+        from rmw_manycore_py.view.server import serve
+
+        serve(platform, listener, period_s)
 
 
 def _draw(platform: str, output: Path, period_s: float) -> None:
@@ -83,22 +84,3 @@ def _draw(platform: str, output: Path, period_s: float) -> None:
 def _svg(look: Look) -> str:
     chip = Chip.of(look)
     return chip.svg(chip.marks(look))
-
-
-def _require_web_server() -> None:
-    if find_spec("aiohttp") is None:
-        raise _no_web_server("No module named 'aiohttp'")
-
-
-def _serve(platform: str, listener: Listener, period_s: float) -> None:
-    try:
-        from rmw_manycore_py.view.server import serve
-    except ImportError as error:
-        raise _no_web_server(error) from error
-    serve(platform, listener, period_s)
-
-
-def _no_web_server(cause: object) -> ManycoreError:
-    return ManycoreError(
-        f"cannot load the web server ({cause}): pip install 'rmw-manycore[view]', or use --once"
-    )

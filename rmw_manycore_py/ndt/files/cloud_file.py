@@ -7,6 +7,7 @@ from pathlib import Path
 from types import ModuleType
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, shorten
+from rmw_manycore_py.extras import OPEN3D, require
 from rmw_manycore_py.ndt.files.pcd_file import read_pcd
 from rmw_manycore_py.ndt.files.ply_file import read_ply
 from rmw_manycore_py.ndt.files.unreadable import UNREADABLE, why_unreadable
@@ -30,15 +31,7 @@ def suffix_of(path: Path) -> str:
 
 def load_open3d() -> ModuleType:
     """Return the module Open3D; raise ManycoreError with install instructions if missing."""
-    try:
-        import open3d
-    except ImportError as error:
-        raise ManycoreError(
-            f"Open3D cannot be loaded ({error}). Downsampling needs it: "
-            "pip install 'rmw-manycore[ndt]'; its system libraries: "
-            "apt install libusb-1.0-0 libgl1 libegl1 libgomp1 libx11-6"
-        ) from error
-    assert isinstance(open3d, ModuleType)
+    open3d = require(OPEN3D)
     open3d.utility.set_verbosity_level(open3d.utility.VerbosityLevel.Error)
     return open3d
 

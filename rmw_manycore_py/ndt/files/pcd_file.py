@@ -11,12 +11,11 @@ from __future__ import annotations
 import struct
 import warnings
 from pathlib import Path
-from types import ModuleType
 from typing import IO
 
 import numpy as np
 
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.extras import LZF, require
 from rmw_manycore_py.ndt.files.pcd_header import PADDING, PcdHeader, read_header
 from rmw_manycore_py.ndt.files.positions import Column, axes_in, read_data, stacked, write_binary
 from rmw_manycore_py.ndt.geometry.arrays import Points
@@ -86,7 +85,7 @@ def _compressed(file: IO[bytes], header: PcdHeader, axes: list[int]) -> list[Col
             f"its {header.points} points need {sum(sizes)} bytes, found {unpacked_bytes} in "
             f"{packed_bytes} compressed ones"
         )
-    data = _load_lzf().decompress(packed, unpacked_bytes) if unpacked_bytes else b""
+    data = require(LZF).decompress(packed, unpacked_bytes) if unpacked_bytes else b""
     if data is None or len(data) != unpacked_bytes:
         raise ValueError("it is broken: its data cannot be decompressed")
     firsts = np.cumsum([0, *sizes])
@@ -103,15 +102,3 @@ def write_pcd(path: Path, points: Points) -> None:
     """Write positions (N, 3) in their own precision, as a binary file."""
     header = HEADER.format(size=points.dtype.itemsize, points=len(points))
     write_binary(path, header, points)
-
-
-def _load_lzf() -> ModuleType:
-    try:
-        import lzf
-    except ImportError as error:
-        raise ManycoreError(
-            f"python-neo-lzf cannot be loaded ({error}). Compressed PCD files need it: "
-            "pip install 'rmw-manycore[ndt]'"
-        ) from error
-    assert isinstance(lzf, ModuleType)
-    return lzf

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, what_is_wrong
+from rmw_manycore_py.extras import ROSBAGS, require
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.recordings.bag_poses import poses_of
 from rmw_manycore_py.ndt.recordings.connections import connections_of
@@ -151,13 +152,10 @@ def _bad_bag(what: str) -> Iterator[None]:
 
 def _opened(path: Path) -> tuple[Any, str]:
     """Return a reader, and a remark if a part of the bag is missing."""
-    try:
-        from rosbags.highlevel import AnyReader
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError as error:
-        raise ManycoreError(
-            f"bags are read with rosbags ({error}): pip install 'rmw-manycore[ndt]'"
-        ) from error
+    require(ROSBAGS)
+    from rosbags.highlevel import AnyReader
+    from rosbags.typesys import Stores, get_typestore
+
     files = _files_of(path)
     is_complete = not path.is_dir() or (path / METADATA).is_file()
     try:

@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.extras import MCAP, require
 from rmw_manycore_py.ndt.recordings.sqlite_rows import SqlitePages
-from rmw_manycore_py.recording.mcap_support import require_library
 
 if TYPE_CHECKING:
     from rmw_manycore_py.recording.recording import Recording
@@ -120,7 +120,7 @@ def _sqlite_data(pages: SqlitePages, place: tuple[int, int]) -> bytes:
 
 
 def _mcap(file: Path, closing: ExitStack) -> Iterator[_Stored]:
-    require_library()
+    require(MCAP)
     from rmw_manycore_py.recording.recording import Recording
 
     try:

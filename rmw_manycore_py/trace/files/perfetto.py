@@ -10,7 +10,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.extras import PERFETTO, require
 from rmw_manycore_py.trace.counters import counters_of
 from rmw_manycore_py.trace.events import Process, Trace
 from rmw_manycore_py.trace.files import packets
@@ -32,7 +32,7 @@ _CLEARED = 1  # SequenceFlags
 
 def write(trace: Trace, file: BinaryIO) -> None:
     """Write the events for `read`, then tracks, slices, flows and counters."""
-    protos = _protos()
+    protos = require(PERFETTO)
     own = field(_OWN_FIELD, to_text(trace).encode())
     file.write(field(_PACKET, own))
     for some in _Writer(protos, trace).all():
@@ -52,17 +52,6 @@ def read(content: bytes, path: Path) -> Trace:
     if not content.endswith(_end()):
         raise wrong(path, "", "a whole trace", "its beginning only")
     return from_text(text.decode(errors="replace"), path)
-
-
-def _protos() -> Any:
-    try:
-        from perfetto.protos.perfetto.trace import perfetto_trace_pb2
-    except ImportError as error:
-        raise ManycoreError(
-            "Perfetto's format needs the package perfetto: pip install 'rmw-manycore[trace]'; "
-            "ui.perfetto.dev opens a .json as well"
-        ) from error
-    return perfetto_trace_pb2
 
 
 def _next_varint(data: bytes, at: int) -> tuple[int, int]:

@@ -103,7 +103,7 @@ def test_a_missing_matplotlib_is_reported_before_the_run(
         timeout=60,
     )
     assert run.returncode != 0
-    assert "matplotlib cannot be loaded" in run.stderr
+    assert "plots need matplotlib" in run.stderr
     assert "pip install" in run.stderr
     assert "Traceback" not in run.stderr
     assert not (tmp_path / "results").exists()
