@@ -127,7 +127,7 @@ def test_nodes_are_stopped_and_restarted_one_by_one(manycore, tmp_path, platform
     assert len(set(pids)) == len(pids), "each start is a process of its own"
     assert last["one"]["respawns"] == 0
     unknown = manycore("restart", "onne", status=EXIT_BAD_INPUT)
-    assert "no node 'onne' in this run; is one meant?" in unknown.output
+    assert "no node 'onne' in this run; did you mean 'one'?" in unknown.output
     manycore("stop")
 
 

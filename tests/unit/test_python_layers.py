@@ -34,6 +34,7 @@ LAYERS = [
         "rmw_manycore_receive",
         ".errors",
         ".examples",
+        ".suggestions",
         ".whole_file",
     ),
     (".extras", ".native", "rmw_manycore_executor"),

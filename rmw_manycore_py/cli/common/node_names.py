@@ -6,8 +6,8 @@ from __future__ import annotations
 import time
 
 from rmw_manycore_py.cli.common import view
-from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.suggestions import did_you_mean
 
 _LOOK_S = 0.1
 

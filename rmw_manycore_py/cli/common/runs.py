@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Sequence
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.runs.directory import RunDirectory, all_runs, runs_of
 from rmw_manycore_py.launch.runs.up_command import up_command
+from rmw_manycore_py.suggestions import did_you_mean
 
 
 def living_runs(platform: str) -> list[RunDirectory]:
@@ -63,6 +63,5 @@ def _known_as(run: RunDirectory, name: str) -> str | None:
 
 def _unknown(runs: Sequence[RunDirectory], name: str) -> str:
     known = [node for run in runs for node in run.nodes]
-    close = difflib.get_close_matches(name, known, n=1)
-    hint = f"is {close[0]} meant?" if close else f"there is {', '.join(known) or 'none'}"
-    return f"no node '{name}' in this run; {hint}"
+    hint = did_you_mean(name, known) or f"; there is {', '.join(known) or 'none'}"
+    return f"no node '{name}' in this run{hint}"

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -21,6 +20,7 @@ from rmw_manycore_py.launch.timekeeper import PlatformModel, VirtualTime
 from rmw_manycore_py.mapfile import Mapfile, Placement, load_mapfile, resolve
 from rmw_manycore_py.prediction.target_file import target_named
 from rmw_manycore_py.profile.files import load
+from rmw_manycore_py.suggestions import did_you_mean
 
 
 def starting_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -170,9 +170,8 @@ def _only(mapfile: Mapfile, names: tuple[str, ...]) -> Mapfile:
     known = {name.lstrip("/"): name for name in nodes}
     for name in names:
         if name.lstrip("/") not in known:
-            close = difflib.get_close_matches(name, nodes, n=1)
-            hint = f"is {close[0]} meant?" if close else f"it has {', '.join(sorted(nodes))}"
-            text = f"--node: no node '{name}' in {mapfile.path}; {hint}"
+            hint = did_you_mean(name, nodes) or f"; it has {', '.join(sorted(nodes))}"
+            text = f"--node: no node '{name}' in {mapfile.path}{hint}"
             raise ManycoreError(text, EXIT_BAD_INPUT)
     wanted = {known[name.lstrip("/")] for name in names}
     return mapfile.only(wanted)

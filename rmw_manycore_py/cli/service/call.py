@@ -16,10 +16,10 @@ from rmw_manycore_py.cli.common.message_text import to_plain
 from rmw_manycore_py.cli.common.message_values import message_of, parse_values
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.printing import echo, print_notices
-from rmw_manycore_py.cli.common.suggestions import closest
 from rmw_manycore_py.cli.common.tool_node import result_of, tool_node
 from rmw_manycore_py.cli.common.values_argument import DEFAULTS, values_argument
 from rmw_manycore_py.process.spinning import spin_once
+from rmw_manycore_py.suggestions import closest
 
 
 @click.command(

@@ -11,7 +11,6 @@ from typing import Any
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.printing import echo, print_notices
-from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
@@ -20,6 +19,7 @@ from rmw_manycore_py.platform.virtual_clock import virtual_clock
 from rmw_manycore_py.process.spinning import spin_once
 from rmw_manycore_py.ros.names import expand
 from rmw_manycore_py.ros.qos import all_reliable, all_transient_local
+from rmw_manycore_py.suggestions import did_you_mean
 
 ANY_QOS = QosOptions()
 

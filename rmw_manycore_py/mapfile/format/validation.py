@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterator
 from typing import Any
 
@@ -24,6 +23,7 @@ from rmw_manycore_py.mapfile.format.model import (
     SchedulingSection,
     TopicSection,
 )
+from rmw_manycore_py.suggestions import closest
 
 _EXPECTED = {
     "int_type": "an integer",
@@ -144,8 +144,8 @@ def _pieces(value: Any) -> Iterator[str]:
 
 def _known_keys(path: KeyPath) -> str:
     known = list(_section(path).model_fields)
-    close = difflib.get_close_matches(str(path[-1]), known, n=1)
-    return f"'{close[0]}'" if close else f"one of {', '.join(known)}"
+    meant = closest(str(path[-1]), known)
+    return f"'{meant}'" if meant else f"one of {', '.join(known)}"
 
 
 def _section(path: KeyPath) -> type[BaseModel]:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import difflib
 import shlex
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
@@ -14,12 +13,15 @@ from rmw_manycore_py.process.scheduling import refusal
 from rmw_manycore_py.ros.domain import is_elsewhere
 from rmw_manycore_py.ros.names import full_node_name
 from rmw_manycore_py.ros.patterns import is_pattern
+from rmw_manycore_py.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile
     from rmw_manycore_py.mapfile.launch_file import LaunchFile
     from rmw_manycore_py.mapfile.placing.start import NodeStart
     from rmw_manycore_py.platform.topology import Topology
+
+_UNSEEN = "; name it under `publish` if the node publishes it all the same"
 
 
 def of_launch(mapfile: Mapfile, launch: LaunchFile | None) -> Iterator[str]:
@@ -67,8 +69,8 @@ def unpublished(
             if topic in published or start.shown is None or start.shown.unclear:
                 continue
             place = f"{mapfile.path}:{mapfile.document.line(('nodes', name, 'topic_to', written))}"
-            meant = _advice(topic, published)
-            yield f"{place}: nodes.{name}.topic_to: no source publishes {topic}; {meant}"
+            advice = did_you_mean(topic, published) or _UNSEEN
+            yield f"{place}: nodes.{name}.topic_to: no source publishes {topic}{advice}"
 
 
 def starting_nothing(mapfile: Mapfile, starts: Mapping[str, NodeStart]) -> Iterator[str]:
@@ -117,10 +119,3 @@ def elsewhere(platform: str, nodes: Sequence[PlacedNode]) -> Iterator[str]:
                 f"'{node.name}' has ROS_DOMAIN_ID={domain}: it meets the nodes of that domain, "
                 f"and none of platform '{platform}'"
             )
-
-
-def _advice(topic: str, published: set[str]) -> str:
-    close = difflib.get_close_matches(topic, published, n=1)
-    if close:
-        return f"is {close[0]} meant?"
-    return "name it under `publish` if the node publishes it all the same"

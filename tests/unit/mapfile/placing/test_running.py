@@ -144,7 +144,7 @@ def test_a_module_that_only_defines_something_is_named(
 def test_a_topic_that_no_source_publishes_is_named(write: Write, tmp_path: Path) -> None:
     (notice,) = crossing(write, "/chatters: TYPE")
     place = f"{tmp_path / 'map.yaml'}:6: nodes.a.topic_to"
-    assert notice == f"{place}: no source publishes /chatters; is /chatter meant?"
+    assert notice == f"{place}: no source publishes /chatters; did you mean '/chatter'?"
     assert crossing(write, "/chatter: TYPE") == ()
     assert crossing(write, "/chat*: ") == ()
     assert crossing(write, "/news: TYPE", "remappings: {chatter: /news}") == ()
