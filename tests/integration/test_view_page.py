@@ -112,6 +112,15 @@ def test_a_number_is_plotted_while_its_field_is_chosen(talking, view, browser) -
     assert browser.complaints() == []
 
 
+# The chip shrinks to 0.7 of its size, and only then is a part of it out of sight.
+SIZES = """
+const chip = document.querySelector("#picture svg");
+const ratio = chip.clientWidth / chip.viewBox.baseVal.width;
+return [stage.clientHeight, document.documentElement.scrollWidth, innerWidth, ratio,
+  stage.scrollWidth > stage.clientWidth];
+"""
+
+
 def test_the_chip_is_seen_at_any_width(talking, view, browser) -> None:
     from support.processes.browser import WINDOW
 
@@ -119,10 +128,11 @@ def test_the_chip_is_seen_at_any_width(talking, view, browser) -> None:
     browser.find("[data-node='/talker']")
     for width in (400, 800, 1200):
         browser.driver.set_window_size(width, 800)
-        script = "return [stage.clientHeight, document.documentElement.scrollWidth, innerWidth]"
-        height, needed, given = browser.driver.execute_script(script)
+        height, needed, given, ratio, is_cut = browser.driver.execute_script(SIZES)
         assert height >= 200, width
         assert needed <= given, width
+        assert ratio >= 0.7 - 1e-3, width
+        assert not is_cut or ratio <= 0.7 + 1e-3, width
     browser.driver.set_window_size(*WINDOW)
 
 

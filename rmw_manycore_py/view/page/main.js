@@ -75,7 +75,7 @@ function fitPaper() {
   const width = picture.svg?.viewBox.baseVal.width ?? 0;
   const zoom = document.getElementById("zoom").value / 100;
   const paper = document.getElementById("paper");
-  paper.style.width = `calc(clamp(${0.8 * width}px, 100%, ${1.5 * width}px) * ${zoom})`;
+  paper.style.width = `calc(clamp(${0.7 * width}px, 100%, ${1.5 * width}px) * ${zoom})`;
   flow.resize();
 }
 
