@@ -16,17 +16,17 @@ def main(arguments: list[str]) -> int:
     """Run one bridge process; started by `manycore run` and `manycore bridge`."""
     # SIGINT ends the process quietly until its own handler is set, also during `import rclpy`.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
-    resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))  # a file for each name of a pattern
+    _, hard_limit = resource.getrlimit(resource.RLIMIT_NOFILE)
+    # Each name of a pattern needs a file.
+    resource.setrlimit(resource.RLIMIT_NOFILE, (hard_limit, hard_limit))
     shorten_time_slice()  # before any thread starts: threads inherit it
     from rmw_manycore_bridge.outside.interface import OutsideError
     from rmw_manycore_bridge.process import BridgeProcess
 
     plan, direction, lane, cluster, core = arguments
     way = DIRECTIONS[DIRECTIONS.index(direction)]
-    place = (int(cluster), int(core))
     try:
-        process = BridgeProcess(Plan.from_json(plan), way, int(lane), place)
+        process = BridgeProcess(Plan.from_json(plan), way, int(lane), (int(cluster), int(core)))
     except OutsideError as error:
         print(error, file=sys.stderr)
         return 1

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 MIN_DIFFERENCE = 0.005  # smaller differences between lanes are ignored
 MIN_GAIN = 0.3  # minimum gain of a move, as a fraction of the difference
-PATIENCE = 3  # consecutive looks that propose the same pair of lanes
+PATIENCE = 3  # consecutive proposals of the same pair of lanes
 
 
 @dataclass(frozen=True)
@@ -50,13 +50,13 @@ def best_move(loads: Sequence[Load], lanes: Collection[int]) -> Move | None:
 
 
 class Balance:
-    """Proposes a move only after it has been worthwhile for several looks."""
+    """Proposes a move only after it has been worthwhile several times in a row."""
 
     def __init__(self) -> None:
         self._times = 0
         self._lanes: tuple[int, int] | None = None
 
-    def look(self, loads: Sequence[Load], lanes: Collection[int]) -> Move | None:
+    def propose(self, loads: Sequence[Load], lanes: Collection[int]) -> Move | None:
         """Return a move to make now, or None."""
         move = best_move(loads, lanes)
         between = None if move is None else (loads[move.index].lane, move.heir)

@@ -100,8 +100,8 @@ class Row:
         self._memory = memory
         self._words = memory[: 8 * _WORDS].cast("Q")
         self._gid_count = memory[8 * _WORDS : 8 * _WORDS + 8].cast("Q")
-        self._places: dict[bytes, int] = {}  # index by publisher gid
-        self._gids: dict[int, bytes] = {}  # of publishers that are not closed, by place
+        self._offsets: dict[bytes, int] = {}  # in the memory, by publisher gid
+        self._gids: dict[int, bytes] = {}  # of publishers that are not closed, by slot
         self.last_passed: LastNumbers = {}  # by this process or a previous one
 
     def passed(self, size: int, latency_ns: int) -> None:
@@ -153,15 +153,15 @@ class Row:
     def add_gid(self, gid: bytes) -> None:
         """Register a publisher of this bridge before it publishes."""
         count = self._gid_count[0]
-        place = next(i % _GIDS for i in range(count, count + _GIDS) if i % _GIDS not in self._gids)
-        start = 8 * _WORDS + 8 + place * _GID_BYTES
+        slot = next(i % _GIDS for i in range(count, count + _GIDS) if i % _GIDS not in self._gids)
+        start = 8 * _WORDS + 8 + slot * _GID_BYTES
         self._memory[start : start + _GID_BYTES] = gid
-        self._gids[place] = gid
-        self._gid_count[0] = place + 1
+        self._gids[slot] = gid
+        self._gid_count[0] = slot + 1
 
     def close_gid(self, gid: bytes) -> None:
-        """Remember a closed publisher only until its place is needed."""
-        self._gids = {place: other for place, other in self._gids.items() if other != gid}
+        """Remember a closed publisher only until its slot is needed."""
+        self._gids = {slot: other for slot, other in self._gids.items() if other != gid}
 
     def has_gid(self, gid: bytes) -> bool:
         """Return whether a publisher belongs to this bridge."""
@@ -173,12 +173,12 @@ class Row:
         """Record a message before forwarding it, for a process that replaces this one."""
         if number <= self.last_passed.get(publisher, -1):  # latched, forwarded again
             return
-        place = self._places.get(publisher)
-        if place is None:
-            place = self._places[publisher] = (
-                _SOURCES_AT + len(self._places) % _SOURCES * _SOURCE.size
+        offset = self._offsets.get(publisher)
+        if offset is None:
+            offset = self._offsets[publisher] = (
+                _SOURCES_AT + len(self._offsets) % _SOURCES * _SOURCE.size
             )
-        _SOURCE.pack_into(self._memory, place, publisher, number)
+        _SOURCE.pack_into(self._memory, offset, publisher, number)
         self.last_passed[publisher] = number
 
     def inherit(self, numbers: LastNumbers) -> None:

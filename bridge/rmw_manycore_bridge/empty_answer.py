@@ -42,7 +42,7 @@ _PER_CONTAINER, _ONE, _ARRAY = 48, 0, 1
 def empty_answer(service_type: str, reason: str) -> bytes:
     """Return a response of default values, with the reason in a suitable field if any.
 
-    Texts and arrays are empty or zero, whatever their type says.
+    Texts and arrays are empty or zero, whatever the defaults of their type.
 
     ROS 2 has no error replies; this response keeps a caller from waiting forever.
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 
 from rmw_manycore_bridge.balance import Balance, Load, Move
 from rmw_manycore_bridge.lanes import LaneTable
-from rmw_manycore_bridge.place import Place
+from rmw_manycore_bridge.topic_role import TopicRole
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import Direction
 
@@ -36,11 +36,11 @@ class Lanes:
         self._next_s = time.monotonic() + BALANCE_S
         self._give_up_s = 0.0
 
-    def place(self, index: int) -> Place:
-        """Return the Place of a topic in this process, by the topic's index in the plan."""
-        return Place(self._table, index, self._lane)
+    def topic_role(self, index: int) -> TopicRole:
+        """Return the role of this process for a topic, by the topic's index in the plan."""
+        return TopicRole(self._table, index, self._lane)
 
-    def look(self) -> bool:
+    def poll(self) -> bool:
         """Start a move if worthwhile; return whether the topics of any lane have changed."""
         table = self._table
         if table is None:
@@ -64,7 +64,7 @@ class Lanes:
         from rmw_manycore_bridge.status import topic_loads  # not loaded with a single lane
 
         found = topic_loads(self._plan.platform, self._stem)
-        move = self._balance.look(self._loads(table, found), found)
+        move = self._balance.propose(self._loads(table, found), found)
         if move is not None:
             self._move = move
             self._give_up_s = time.monotonic() + MOVE_S

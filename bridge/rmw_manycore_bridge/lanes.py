@@ -48,7 +48,7 @@ class LaneTable:
         self._path = path
         self._lock = threading.Lock()
         self._seen: tuple[int, int] | None = None
-        self._told: tuple[int, int] | None = None
+        self._reported: tuple[int, int] | None = None
         self._shares: list[Share] = []
 
     @classmethod
@@ -88,8 +88,8 @@ class LaneTable:
 
     def has_changed(self) -> bool:
         """Return whether the file has changed since the last call."""
-        before, self._told = self._told, self._stamp()
-        return self._told != before
+        before, self._reported = self._reported, self._stamp()
+        return self._reported != before
 
     @contextmanager
     def change(self, index: int) -> Iterator[Share]:

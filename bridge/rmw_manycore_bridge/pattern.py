@@ -54,7 +54,7 @@ class Pattern(Mover):
         self._plan, self._sides, self._passed_before = plan, sides, before
         self._find, self._make = find, make
         self._members: dict[str, _Member] = {}
-        self._movers: list[Mover] = []  # of the members: looked at in every turn
+        self._movers: list[Mover] = []  # of the members: visited in every turn
         self._is_full = False
         route = sides.route
         inward = route.direction == "inward"
@@ -118,7 +118,7 @@ class Pattern(Mover):
             return True
         if not self._is_full:
             self._is_full = True
-            self._sides.say(f"more than {MAX_NAMES} names match; the others are not bridged")
+            self._sides.report(f"more than {MAX_NAMES} names match; the others are not bridged")
         return False
 
     def _begin(self, name: str, types: Types) -> _Member:
@@ -152,7 +152,7 @@ class Pattern(Mover):
             names = {"inside": name.removeprefix(route.prefix), "outside": name}
         else:
             names = {"inside": name, "outside": f"{route.prefix}{name}"}
-        # The other direction may match the same name; messages are told apart by publisher gid.
+        # The other direction may match the same name; messages are distinguished by publisher gid.
         return replace(route, **names, type=min(types), mirrored=True)  # type: ignore[arg-type]
 
     def _sides_of(self, route: Route, slot: int) -> Sides:

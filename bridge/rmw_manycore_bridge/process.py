@@ -19,8 +19,8 @@ from rmw_manycore_bridge.inside import NODE_PREFIX, Inside
 from rmw_manycore_bridge.lane import Lanes
 from rmw_manycore_bridge.outside.interface import Joining, Outside
 from rmw_manycore_bridge.outside.loop import Loop, Mover
-from rmw_manycore_bridge.place import Place
 from rmw_manycore_bridge.sides import OwnPublishers, Sides
+from rmw_manycore_bridge.topic_role import TopicRole
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.process.readiness import report_ready
 from rmw_manycore_py.process.signals import signal_inbox
@@ -85,12 +85,12 @@ class BridgeProcess:
         if is_service:
             find, make_one = source.served, make
         else:
-            find, make_one = source.published, lambda one: make(one, Place(lane=one.route.lane))
+            find, make_one = source.published, lambda one: make(one, TopicRole(lane=one.route.lane))
         if route.is_pattern:
             from rmw_manycore_bridge.pattern import Pattern
 
             return Pattern(self._plan, sides, find, make_one, self._before), loop
-        return (make(sides) if is_service else make(sides, self._lanes.place(index))), loop
+        return (make(sides) if is_service else make(sides, self._lanes.topic_role(index))), loop
 
     def _graphs_changed(self) -> None:
         for loop in self._loops:
@@ -106,7 +106,7 @@ class BridgeProcess:
             endings = [inbox.fileno(), self._failed]
             try:
                 while not select.select(endings, [], [], self._lanes.period_s)[0]:
-                    if self._lanes.look():
+                    if self._lanes.poll():
                         self._graphs_changed()
             finally:  # an I/O error of the table ends the process; the runner restarts it
                 # An engine that never returns is shown with the call that waits for it.

@@ -69,7 +69,7 @@ class Service(Mover):
             yield
         except Exception as error:
             if self._sides.row.add("refused") == 1:
-                self._sides.say(str(error))
+                self._sides.report(str(error))
             if caller is not None:
                 self._answer_empty(caller, str(error))
 
@@ -89,11 +89,11 @@ class Service(Mover):
 
     def _give_up(self, caller: Any, counter: str, reason: str) -> None:
         self._sides.row.add(counter)
-        self._sides.say(reason)
+        self._sides.report(reason)
         self._answer_empty(caller, reason)
 
     def _answer_empty(self, caller: Any, reason: str) -> None:
         try:
             self._reply(caller, empty_answer(self._sides.route.type, f"bridge: {reason}"))
         except Exception as error:  # the caller may have ended; the request is counted
-            self._sides.say(f"cannot answer a caller: {error}")
+            self._sides.report(f"cannot answer a caller: {error}")

@@ -28,7 +28,7 @@ class OutwardService(Service):
     def __init__(self, sides: Sides) -> None:
         super().__init__(sides)
         # CLOCK_MONOTONIC: since when a server is seen but unmatched, and when to poll again.
-        self._seen_s = self._look_s = _NEVER_S
+        self._seen_s = self._poll_s = _NEVER_S
         # Held while requests are claimed: both threads claim, and no claim may follow the last one.
         self._claiming = threading.Lock()
         self._requests: _transport.Subscription | None = None
@@ -38,10 +38,10 @@ class OutwardService(Service):
 
     def reconcile(self) -> None:
         """Offer the service on the platform while a server exists outside."""
-        self._look_s = _NEVER_S
+        self._poll_s = _NEVER_S
         if not self._client.is_ready():
             self._leave_platform()
-            self._look_for_server()
+            self._poll_for_server()
             return
         self._seen_s = _NEVER_S
         if self._requests is None:
@@ -51,7 +51,7 @@ class OutwardService(Service):
             self._sides.inside.wake()
             self._sides.row.set_state("forwarding")
 
-    def _look_for_server(self) -> None:
+    def _poll_for_server(self) -> None:
         """Poll for the match of a known server, or fail if it does not match."""
         route, now_s = self._sides.route, time.monotonic()
         found = self._sides.outside.server_types(route.outside)
@@ -61,7 +61,7 @@ class OutwardService(Service):
             return
         self._seen_s = min(self._seen_s, now_s)
         waited_s = now_s - self._seen_s
-        self._look_s = now_s + max(waited_s, _MATCHING_S)
+        self._poll_s = now_s + max(waited_s, _MATCHING_S)
         if waited_s > _MATCHED_BY_S:
             self._sides.fail("has a server outside that DDS does not match: its QoS may not fit")
         else:
@@ -70,12 +70,12 @@ class OutwardService(Service):
     @property
     def due_s(self) -> float:  # type: ignore[override]
         """Earliest deadline of a request or of the next poll for a match."""
-        return min(self._pending.due_s, self._look_s)
+        return min(self._pending.due_s, self._poll_s)
 
     def expire(self, now_s: float) -> None:
         """Answer overdue requests; poll for the server's match."""
         super().expire(now_s)
-        if self._look_s <= now_s:
+        if self._poll_s <= now_s:
             self.try_to_reconcile()
 
     def pump_inside(self) -> None:

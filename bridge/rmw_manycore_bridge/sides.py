@@ -54,12 +54,12 @@ class Sides:
         before = self._standing()
         self.row.set_state("failed", line)
         if self._standing() != before:  # compare stored text: a row truncates it
-            self.say(line)
+            self.report(line)
 
     def _standing(self) -> tuple[str, str]:
         values = self.row.as_dict()
         return values["state"], values["reason"]
 
-    def say(self, text: str) -> None:
+    def report(self, text: str) -> None:
         """Print a line about the route."""
         print(f"{self.route.inside}: {text}", file=sys.stderr, flush=True)

@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from rmw_manycore_bridge.lanes import Share
 from rmw_manycore_bridge.limits import Limits
 from rmw_manycore_bridge.outside.loop import Mover
-from rmw_manycore_bridge.place import SETTLE_S, STEP_S, Held, Place
 from rmw_manycore_bridge.sides import Sides
+from rmw_manycore_bridge.topic_role import SETTLE_S, STEP_S, Held, TopicRole
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native._transport import Qos
 
@@ -24,11 +24,11 @@ _NEVER_S = float("inf")
 
 
 class Topic(Mover):
-    """One topic in one process; everything but `place` belongs to the receiving thread."""
+    """One topic in one process; everything but `role` belongs to the receiving thread."""
 
-    def __init__(self, sides: Sides, place: Place) -> None:
+    def __init__(self, sides: Sides, role: TopicRole) -> None:
         super().__init__(sides.fail)
-        self._sides, self._place = sides, place
+        self._sides, self._role = sides, role
         sides.outside.require_type(sides.route.type)
         self._limits = Limits(sides.route)
         self._offer: Qos | None = None
@@ -42,12 +42,12 @@ class Topic(Mover):
 
     def reconcile(self) -> None:
         """Adapt the endpoints to both graphs, and advance a move by one step."""
-        share, before = self._place.look(), self._place.role
+        share, before = self._role.update(), self._role.name
         self.due_s = _NEVER_S
         if before == "none":
             self._rest()
             return
-        if before == "owner" and self._place.holds:
+        if before == "owner" and self._role.holds:
             self._inherit(share)  # with the endpoints the messages were held for
         if self._paused and before == "owner" and share.heir is None:
             self._paused = False
@@ -63,8 +63,8 @@ class Topic(Mover):
             self._give(share)
 
     def _inherit(self, share: Share) -> None:
-        held = self._place.inherit(share)
-        self.begin_after(self._place.inherited)
+        held = self._role.inherit(share)
+        self.begin_after(self._role.inherited)
         for message in held:
             if self._offer is None:  # all publishers have gone, and so have the endpoints
                 self._sides.row.add("lost")
@@ -95,29 +95,29 @@ class Topic(Mover):
         now_s = time.monotonic()
         self.due_s = now_s + STEP_S
         if self._offer is None:
-            if self._place.holds:
-                self._place.decline()
+            if self._role.holds:
+                self._role.decline()
             return
         matched = self.matched_outside()
         if self._offer.durability == "transient_local":
-            self._place.decline()
-        elif not self._place.holds and (self._settled_s == _NEVER_S or matched != self._matched):
+            self._role.decline()
+        elif not self._role.holds and (self._settled_s == _NEVER_S or matched != self._matched):
             self._settled_s, self._offer_held = now_s + SETTLE_S, self._offer
             self._matched = matched
         elif self._offer is not self._offer_held:
-            self._place.decline()  # the endpoints were recreated
-        elif self._place.holds:
-            self._place.report(share, matched)
+            self._role.decline()  # the endpoints were recreated
+        elif self._role.holds:
+            self._role.report(share, matched)
         elif now_s >= self._settled_s:
             self._settled_s = _NEVER_S
-            self._place.begin_to_hold()
+            self._role.begin_to_hold()
 
     def _give(self, share: Share) -> None:
         """As owner: stop where the heir can continue, and hand over once all messages are acked."""
         self.due_s = time.monotonic() + STEP_S
         if self._offer is None or self._offer.durability == "transient_local":
-            self._place.decline()
-        elif self._place.may_hand_over(share):
+            self._role.decline()
+        elif self._role.may_hand_over(share):
             if not self._paused:
                 if share.matched < self.matched_outside():
                     return  # an endpoint outside has not discovered the heir, or is gone
@@ -125,20 +125,20 @@ class Topic(Mover):
                     return  # a slow subscriber would prolong the pause
                 self._paused, self._paused_s = True, time.monotonic()
                 self.pause()
-            if self.is_acknowledged() and self._place.hand_over():
+            if self.is_acknowledged() and self._role.hand_over():
                 self.due_s = time.monotonic()
             elif time.monotonic() > self._paused_s + PAUSE_S:
-                self._place.decline()
+                self._role.decline()
 
     def arrived(self, publisher: bytes, number: int, address: int, size: int, sent_ns: int) -> None:
         """Handle an arrived message, unless another lane forwards it."""
-        place, row = self._place, self._sides.row
+        role, row = self._role, self._sides.row
         if self._sides.route.mirrored and self._sides.own.has(publisher):
             row.add("own")
-        elif place.role == "heir":
+        elif role.name == "heir":
             data = ctypes.string_at(address, size)
-            place.hold(Held(publisher, number, data, sent_ns))
-        elif not place.repeats(publisher, number) and not self._drops_repeated(publisher, number):
+            role.hold(Held(publisher, number, data, sent_ns))
+        elif not role.repeats(publisher, number) and not self._drops_repeated(publisher, number):
             self._note(publisher, number)
             self._pass_on(address, size, sent_ns, publisher, number)
 
@@ -162,7 +162,7 @@ class Topic(Mover):
 
     def _note(self, publisher: bytes, number: int) -> None:
         self.count_gap(publisher, number)
-        self._place.passed(publisher, number)
+        self._role.passed(publisher, number)
         self._sides.row.note_last(publisher, number)
 
     def _pass_on(
@@ -176,7 +176,7 @@ class Topic(Mover):
             self.send(address, size, sent_ns, publisher, number)
         except (_transport.PlatformError, RuntimeError) as error:
             if row.add("refused") == 1:
-                self._sides.say(str(error))
+                self._sides.report(str(error))
             return
         row.passed(size, time.time_ns() - sent_ns)
 

@@ -11,10 +11,10 @@ from rmw_manycore_bridge.counters import MAX_PUBLISHERS
 from rmw_manycore_bridge.limits import Gaps
 from rmw_manycore_bridge.outside import types
 from rmw_manycore_bridge.outside.interface import Endpoint, Subscription
-from rmw_manycore_bridge.place import Place
 from rmw_manycore_bridge.policies import common_offer, request_for, satisfies, unmet
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_bridge.topic import BATCH, Topic
+from rmw_manycore_bridge.topic_role import TopicRole
 from rmw_manycore_py.native import _transport
 
 
@@ -28,8 +28,8 @@ class _Publisher(NamedTuple):
 class InwardTopic(Topic):
     """Runs in the thread of the outside."""
 
-    def __init__(self, sides: Sides, place: Place) -> None:
-        super().__init__(sides, place)
+    def __init__(self, sides: Sides, role: TopicRole) -> None:
+        super().__init__(sides, role)
         self._publishers: dict[bytes, _Publisher] = {}  # by gid outside
         self._subscription: Subscription | None = None
         self._gaps = Gaps(sides.row)

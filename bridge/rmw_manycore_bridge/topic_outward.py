@@ -7,10 +7,10 @@ import time
 
 from rmw_manycore_bridge.outside import types
 from rmw_manycore_bridge.outside.interface import Publisher
-from rmw_manycore_bridge.place import STEP_S, Place
 from rmw_manycore_bridge.policies import common_offer, request_for, satisfies, unmet
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_bridge.topic import BATCH, TURN_S, Topic
+from rmw_manycore_bridge.topic_role import STEP_S, TopicRole
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native._transport import Qos
 
@@ -18,8 +18,8 @@ from rmw_manycore_py.native._transport import Qos
 class OutwardTopic(Topic):
     """Runs in the thread of the platform side."""
 
-    def __init__(self, sides: Sides, place: Place) -> None:
-        super().__init__(sides, place)
+    def __init__(self, sides: Sides, role: TopicRole) -> None:
+        super().__init__(sides, role)
         self._publisher: Publisher | None = None
         self._subscription: _transport.Subscription | None = None
         self._lost = 0

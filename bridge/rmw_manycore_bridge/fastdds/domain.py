@@ -121,11 +121,11 @@ class Domain:
         wait_set.wait(-1 if timeout_s is None else int(timeout_s * _NS_PER_S))
         if wait_set.is_ready("guard_condition", _GRAPH):
             self._changed()
-        places = {"subscription": 0, "service": 0, "client": 0}
+        indices = {"subscription": 0, "service": 0, "client": 0}
         for reader, pump in readers:
-            place = places[reader.kind]
-            places[reader.kind] += 1
-            if wait_set.is_ready(reader.kind, place):
+            index = indices[reader.kind]
+            indices[reader.kind] += 1
+            if wait_set.is_ready(reader.kind, index):
                 pump()
 
     def _new_wait_set(self, readers: list[Any]) -> Any:

@@ -69,7 +69,7 @@ class Platform(Protocol):
 
 
 class OutsideError(RuntimeError):
-    """The engine refuses a call; the message says why."""
+    """The engine refuses a call; the message names the reason."""
 
 
 class Subscription(Protocol):
@@ -201,7 +201,7 @@ class Outside(Loop):
     def publishers(self, route: Route, is_wanted: bool) -> list[Endpoint]:
         """Return the publishers of a topic, except this bridge's.
 
-        :param is_wanted: whether to look for publishers that the graph does not report, too.
+        :param is_wanted: whether to search for publishers that the graph does not report, too.
         """
 
     @abstractmethod

@@ -29,7 +29,7 @@ def pack(number: int, sent_ns: int, gid: bytes) -> bytes:
 
 
 def unpack(data: bytes) -> Attachment | None:
-    """Return what an attachment says; None if it has an unknown format."""
+    """Return the contents of an attachment; None if it has an unknown format."""
     if len(data) == _NUMBERS.size:
         number, sent_ns, length, gid = _NUMBERS.unpack(data)
         is_known = length == _GID_BYTES and min(number, sent_ns) >= 0

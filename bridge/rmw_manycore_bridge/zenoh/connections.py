@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import zenoh
 
-from rmw_manycore_bridge.zenoh.graph import Graph, say
+from rmw_manycore_bridge.zenoh.graph import Graph, report
 from rmw_manycore_bridge.zenoh.session import DEFAULT_CONNECT
 
 
@@ -24,18 +24,18 @@ class Connections:
 
     def _miss(self, text: str) -> None:
         self._is_missing = True
-        say(text)
+        report(text)
 
     def _noted(self, event: zenoh.TransportEvent) -> None:
         is_router = event.transport.whatami == zenoh.WhatAmI.ROUTER
         if event.kind == zenoh.SampleKind.PUT:
             if is_router and self._is_missing:
                 self._is_missing = False
-                say(f"connected to the router at {self._where}")
+                report(f"connected to the router at {self._where}")
         elif is_router:
             self._miss(f"the router at {self._where} is gone; connecting again once it is back")
         elif nodes := self._graph.forget(str(event.transport.zid)):
-            say(f"lost the peer with {', '.join(sorted(nodes))}")
+            report(f"lost the peer with {', '.join(sorted(nodes))}")
 
     def close(self) -> None:
         """Listen no more."""

@@ -143,23 +143,23 @@ class Graph:
             try:
                 token = self._tokens[text] = parse_token(text)
             except TokenError as error:
-                self.say_once(f"unknown token in the graph: {error}", text)
+                self.report_once(f"unknown token in the graph: {error}", text)
                 return
             if token.full_node_name.startswith(LINK_NODE):
                 self._met.setdefault(token.session, set()).add(token.full_node_name)
         self._changed()
 
-    def say_once(self, problem: str, example: str) -> None:
+    def report_once(self, problem: str, example: str) -> None:
         """Print a problem when it first occurs."""
         if problem not in self._said:
             self._said.add(problem)
-            say(f"{problem}: {example!a}")  # it may contain control characters
+            report(f"{problem}: {example!a}")  # it may contain control characters
 
     def close(self) -> None:
         """Stop watching; the session withdraws all tokens."""
         self._watch.undeclare()
 
 
-def say(text: str) -> None:
+def report(text: str) -> None:
     """Print a line about the session."""
     print(f"zenoh: {text}", file=sys.stderr, flush=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from rmw_manycore_bridge.outside.interface import Platform
 from rmw_manycore_bridge.outside.loop import Mover
 from rmw_manycore_bridge.zenoh import qos as qos_text
-from rmw_manycore_bridge.zenoh.graph import LINK_NODE, Declared, Graph, StandIn, say
+from rmw_manycore_bridge.zenoh.graph import LINK_NODE, Declared, Graph, StandIn, report
 from rmw_manycore_bridge.zenoh.keys import Token
 from rmw_manycore_bridge.zenoh.topics import ZenohPublisher
 from rmw_manycore_py.native._transport import EndpointInfo, Node
@@ -90,7 +90,7 @@ class OwnNodes(Mover):
     """Shows this host's nodes to another."""
 
     def __init__(self, platform: Platform, graph: Graph) -> None:
-        super().__init__(say)
+        super().__init__(report)
         self._platform, self._graph = platform, graph
         self._shown: dict[str, StandIn] = {}
 
@@ -110,7 +110,7 @@ class OtherNodes(Mover):
     """Shows the nodes of other hosts on this platform."""
 
     def __init__(self, platform: Platform, graph: Graph) -> None:
-        super().__init__(say)
+        super().__init__(report)
         self._platform, self._graph = platform, graph
         self._shown: dict[str, Node] = {}
 

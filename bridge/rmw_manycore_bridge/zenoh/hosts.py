@@ -10,7 +10,7 @@ from __future__ import annotations
 import zenoh
 
 from rmw_manycore_bridge.outside.interface import Endpoint, Joining, Platform
-from rmw_manycore_bridge.zenoh.graph import LINK_NODE, Graph, say
+from rmw_manycore_bridge.zenoh.graph import LINK_NODE, Graph, report
 from rmw_manycore_bridge.zenoh.host_graph import HostPublisher, OtherNodes, OwnNodes
 from rmw_manycore_bridge.zenoh.outside import Zenoh
 from rmw_manycore_bridge.zenoh.session import open_connecting, open_listening
@@ -37,7 +37,7 @@ class Hosts(Zenoh):
             return open_listening(outside.listen, waits=False)
         except zenoh.ZError as error:  # its interface is not up, or its port in use
             text = f"cannot listen at {outside.listen}, the address of {outside.host}: {error}"
-            say(f"{text}; trying again")
+            report(f"{text}; trying again")
             self._is_late = True
             return open_listening(outside.listen, waits=True)
 
@@ -79,12 +79,12 @@ class HostWatch:
     def _noted(self, event: zenoh.TransportEvent) -> None:
         """Print what has changed, in a thread of zenoh."""
         if event.kind == zenoh.SampleKind.PUT:
-            say("connected to another host")
+            report("connected to another host")
         else:
             nodes = self._graph.forget(str(event.transport.zid))
             links = (n.removeprefix(LINK_NODE) for n in nodes if n.startswith(LINK_NODE))
             host = next((f"host {link.rpartition('_')[0]}" for link in links), "another host")
-            say(f"lost {host}; connecting again once it is back")
+            report(f"lost {host}; connecting again once it is back")
 
     def close(self) -> None:
         """Listen no more."""

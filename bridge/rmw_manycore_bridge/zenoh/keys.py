@@ -18,7 +18,7 @@ _NODE_PARTS, _ENDPOINT_PARTS = 9, 13  # newer releases may append more
 
 
 class TokenError(ValueError):
-    """A token is in no known format; the message says why."""
+    """A token is in no known format; the message names the reason."""
 
 
 def dds_type(name: str) -> str:

@@ -44,7 +44,7 @@ class Zenoh(Outside):
         self._ready = Event()
         self._is_changed = False
         self._error: BaseException | None = None  # of a thread of zenoh
-        # Subscriptions that look for publishers without tokens, by topic inside and outside.
+        # Subscriptions that search for publishers without tokens, by topic inside and outside.
         self._scouts: dict[tuple[str, str], ZenohSubscription] = {}
         self._graph = Graph(self._session, domain, joining.name, self._note_change)
         self._connections = self._watch(joining, self._graph)
@@ -81,7 +81,7 @@ class Zenoh(Outside):
             scout = None
         if tokens := self._graph.endpoints("MP", route.outside):
             if scout is not None and scout.is_in_graph:
-                del self._scouts[_name(route)]  # the tokens tell when the publishers are gone
+                del self._scouts[_name(route)]  # the tokens show when the publishers are gone
             return [Endpoint(self._type_of(token), self._qos_of(token)) for token in tokens]
         if scout is None and is_wanted:
             self._scouts[_name(route)] = self._scout(route)
@@ -149,7 +149,7 @@ class Zenoh(Outside):
 
     def turn(self, timeout_s: float | None) -> None:
         """Block until something changes, then forward what has arrived."""
-        # A thread of zenoh that runs a mover may change the readers: look at a copy.
+        # A thread of zenoh that runs a mover may change the readers: iterate over a copy.
         if not any(reader.has_data() for reader in list(self.readers)):
             self._ready.wait(timeout_s)
         self._ready.clear()
@@ -189,7 +189,7 @@ class Zenoh(Outside):
         self._session.close()
 
     def _scout(self, route: Route) -> ZenohSubscription:
-        """Return a subscription that looks for publishers without a token."""
+        """Return a subscription that searches for publishers without a token."""
         made = ZenohSubscription(
             *(
                 self._key(route),
@@ -228,7 +228,7 @@ class Zenoh(Outside):
         try:
             return qos_text.decode(token.qos)
         except ValueError:
-            self._graph.say_once("unknown QoS in the graph, taken as the default", token.text)
+            self._graph.report_once("unknown QoS in the graph, taken as the default", token.text)
             return Qos()
 
 

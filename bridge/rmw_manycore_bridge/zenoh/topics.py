@@ -19,7 +19,7 @@ from zenoh.handlers import Callback
 
 from rmw_manycore_bridge.outside.interface import OutsideError
 from rmw_manycore_bridge.zenoh.attachment import pack, unpack
-from rmw_manycore_bridge.zenoh.graph import Declared, Graph, say
+from rmw_manycore_bridge.zenoh.graph import Declared, Graph, report
 from rmw_manycore_bridge.zenoh.keys import Token
 from rmw_manycore_py.native._transport import EndpointInfo, Qos
 
@@ -83,7 +83,7 @@ class ZenohSubscription:
         )
 
     def keep(self, qos: Qos) -> None:
-        """Keep as many messages as the QoS says."""
+        """Keep as many messages as the QoS demands."""
         self._depth = qos.depth
         self._is_reliable = qos.reliability == "reliable"
 
@@ -101,7 +101,7 @@ class ZenohSubscription:
         if sample.kind != zenoh.SampleKind.PUT:
             return
         if str(sample.key_expr) != self._key:
-            self._say_once(f"{_OTHER_TYPE}: {str(sample.key_expr)!a}", _OTHER_TYPE)
+            self._report_once(f"{_OTHER_TYPE}: {str(sample.key_expr)!a}", _OTHER_TYPE)
             return
         message = self._message_of(sample)
         if self._is_reliable and self._is_full():
@@ -126,17 +126,17 @@ class ZenohSubscription:
         data, attached = sample.payload.to_bytes(), sample.attachment
         found = unpack(attached.to_bytes()) if attached is not None else None
         if found is None:
-            self._say_once(_NO_NUMBERS)
+            self._report_once(_NO_NUMBERS)
             gid = xxhash.xxh3_128_digest(str(sample.key_expr).encode())
             return _Message(gid, next(self._numbers), time.time_ns(), data)
         if found.is_old:
-            self._say_once(_OLD_PEER)
+            self._report_once(_OLD_PEER)
         return _Message(found.gid, found.number, found.sent_ns, data)
 
-    def _say_once(self, text: str, problem: str = "") -> None:
+    def _report_once(self, text: str, problem: str = "") -> None:
         if (problem or text) not in self._said:
             self._said.add(problem or text)
-            say(f"{self._key.split('/', 1)[1].rsplit('/', 2)[0]}: {text}")
+            report(f"{self._key.split('/', 1)[1].rsplit('/', 2)[0]}: {text}")
 
     def has_data(self) -> bool:
         """Return whether a message waits."""
@@ -176,7 +176,7 @@ class ZenohSubscription:
         return len(self._message.data)
 
     def matched(self) -> int:
-        """Return 0: zenoh does not say how many publishers know of it."""
+        """Return 0: zenoh does not report how many publishers know of it."""
         return 0
 
     def close(self) -> None:

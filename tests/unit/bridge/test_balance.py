@@ -53,9 +53,9 @@ def test_a_passing_difference_moves_nothing() -> None:
     uneven, even = [Load(0, 0.3), Load(0, 0.3), Load(1, 0.0)], [Load(0, 0.3), Load(1, 0.3)]
     balance = Balance()
     for _ in range(PATIENCE - 1):
-        assert balance.look(uneven, {0, 1}) is None
-    assert balance.look(even, {0, 1}) is None
-    moves = [balance.look(uneven, {0, 1}) for _ in range(PATIENCE)]
+        assert balance.propose(uneven, {0, 1}) is None
+    assert balance.propose(even, {0, 1}) is None
+    moves = [balance.propose(uneven, {0, 1}) for _ in range(PATIENCE)]
     assert [move is not None for move in moves] == [False] * (PATIENCE - 1) + [True]
 
 
@@ -63,4 +63,4 @@ def test_a_difference_that_goes_to_and_fro_moves_nothing() -> None:
     left, right = [Load(0, 0.3), Load(0, 0.3), Load(1, 0.0)], [Load(1, 0.3), Load(1, 0.3)]
     balance = Balance()
     for loads in [left, right] * PATIENCE:
-        assert balance.look(loads, {0, 1}) is None
+        assert balance.propose(loads, {0, 1}) is None

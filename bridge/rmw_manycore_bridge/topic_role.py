@@ -8,7 +8,7 @@ from typing import Literal
 
 from rmw_manycore_bridge.lanes import LaneTable, Share
 
-Role = Literal["owner", "heir", "none"]
+RoleName = Literal["owner", "heir", "none"]
 
 # Once no more endpoints match with the heir's: by then silent publishers outside have matched, too.
 SETTLE_S = 1.0
@@ -25,32 +25,32 @@ class Held:
     source_timestamp_ns: int
 
 
-class Place:
-    """One topic in one process; used only by the topic's thread."""
+class TopicRole:
+    """Role of one process for one topic; used only by the topic's thread."""
 
     def __init__(self, table: LaneTable | None = None, index: int = 0, lane: int = 0) -> None:
         self._table, self._index, self._lane = table, index, lane
-        self.role: Role = "owner" if table is None else "none"
+        self.name: RoleName = "owner" if table is None else "none"
         self._passed: dict[bytes, int] = {}
         self._passed_before: dict[bytes, int] | None = None  # numbers when the heir appeared
         self._skipped: dict[bytes, int] = {}  # forwarded by the previous owner
         self._first: dict[bytes, int] = {}
         self._held: list[Held] | None = None  # None before the heir starts to hold
 
-    def look(self) -> Share:
+    def update(self) -> Share:
         """Return the current share, and take the role it assigns to this process."""
         if self._table is None:
             return Share(self._lane)
         share = self._table.shares[self._index]
         if share.owner == self._lane:
-            role: Role = "owner"
+            role: RoleName = "owner"
         else:
             role = "heir" if share.heir == self._lane else "none"
-        if role == "none" or (role == "heir" and self.role != "heir"):
+        if role == "none" or (role == "heir" and self.name != "heir"):
             self._first, self._held = {}, None
         if share.heir is None:
             self._passed_before = None
-        self.role = role
+        self.name = role
         return share
 
     # As owner.
