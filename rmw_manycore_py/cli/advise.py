@@ -9,11 +9,11 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.advice.advising import Advice, Request, advise
+from rmw_manycore_py.advice.explanation import as_data, sentences
 from rmw_manycore_py.advice.isolated_executor import thread_configuration
 from rmw_manycore_py.advice.problem import ConstraintKind
 from rmw_manycore_py.advice.solving import Effort
 from rmw_manycore_py.advice.weights import OBJECTIVES, Objective
-from rmw_manycore_py.advice.words import as_data, sentences
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples, json_option, number_option
 from rmw_manycore_py.cli.common.output_file import OutputFile, writing

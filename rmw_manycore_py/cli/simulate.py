@@ -27,9 +27,9 @@ from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.extras import SIMPY, require
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 from rmw_manycore_py.prediction import Prediction, Target, predict, sites_of
+from rmw_manycore_py.prediction.json_data import as_data
 from rmw_manycore_py.prediction.sweep import sweep_of
 from rmw_manycore_py.prediction.target_file import target_named
-from rmw_manycore_py.prediction.words import as_data
 from rmw_manycore_py.profile.files import load
 from rmw_manycore_py.trace.files import SUFFIXES, save
 

@@ -19,7 +19,7 @@ from rmw_manycore_py.mapfile.placing.moves import Proposal, RoomError
 from rmw_manycore_py.mapfile.placing.room import Placed
 from rmw_manycore_py.mapfile.placing.show import cluster_row
 from rmw_manycore_py.mapping import facts_of
-from rmw_manycore_py.mapping.words import as_data, fit_of, verdict
+from rmw_manycore_py.mapping.verdict import as_data, fit_of, verdict
 
 
 @click.command(

@@ -19,7 +19,7 @@ from rmw_manycore_py.mapfile import check
 from rmw_manycore_py.mapping import Facts, facts_of
 from rmw_manycore_py.mapping.crossing import Publication, Traffic
 from rmw_manycore_py.mapping.recorded import Recorded
-from rmw_manycore_py.mapping.words import verdict
+from rmw_manycore_py.mapping.verdict import verdict
 from rmw_manycore_py.trace.events import (
     EVENT,
     NO_ENDPOINT,

@@ -27,12 +27,12 @@ def is_reliable(
     likelihood = alignment.nearest_voxel_likelihood
     diagnostics.value("nearest_voxel_transformation_likelihood", likelihood)
     if parameters.converged_param_type == TRANSFORM_PROBABILITY:
-        score, least = alignment.transform_probability, parameters.min_transform_probability
+        score, threshold = alignment.transform_probability, parameters.min_transform_probability
     else:
-        score, least = likelihood, parameters.min_nearest_voxel_likelihood
-    if not score > least:
-        diagnostics.warn(f"the score {score:.3f} is not above the threshold {least:g}")
-    return has_ended(alignment) and score > least
+        score, threshold = likelihood, parameters.min_nearest_voxel_likelihood
+    if not score > threshold:
+        diagnostics.warn(f"the score {score:.3f} is not above the threshold {threshold:g}")
+    return has_ended(alignment) and score > threshold
 
 
 def output_covariance(alignment: Alignment, parameters: MatcherParameters) -> Matrix:

@@ -16,7 +16,7 @@ from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.matching.alignment import Alignment
 from rmw_manycore_py.ndt.matching.matcher import Matcher
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
-from rmw_manycore_py.ndt.nodes.scan_matcher import judgement
+from rmw_manycore_py.ndt.nodes.scan_matcher import reliability
 from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
 from rmw_manycore_py.ndt.trust.judge import PoseJudge, Verdict
@@ -80,8 +80,8 @@ class AutowareTracking:
     def track(self, scan: ScanAt, report: Diagnostics) -> Tracked:
         """Align and judge a scan."""
         alignment = self._matcher.align_once(scan.points, scan.guess, scan.regularization)
-        reliable = judgement.is_reliable(alignment, self._p, report)
-        return Tracked(alignment, reliable, judgement.output_covariance(alignment, self._p))
+        reliable = reliability.is_reliable(alignment, self._p, report)
+        return Tracked(alignment, reliable, reliability.output_covariance(alignment, self._p))
 
     def missed(self, report: Diagnostics) -> None:
         """Do nothing."""
@@ -138,7 +138,7 @@ class RobustTracking:
             expected = scan.guess if verdict.expected is None else verdict.expected.poses[0]
             self._recovery.refused(scan.stamp_s, scan.points, scan.guess, expected)
         self._report_recovery(report)
-        covariance = verdict.covariance(judgement.output_covariance(alignment, self._p))
+        covariance = verdict.covariance(reliability.output_covariance(alignment, self._p))
         return Tracked(alignment, verdict.is_believed, covariance)
 
     def missed(self, report: Diagnostics) -> None:
