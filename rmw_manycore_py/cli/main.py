@@ -54,14 +54,15 @@ SECTIONS = {
         "run", "up", "ps", "logs", "restart", "move", "attach", "stop", "demo", "map", "create",
         "bridge", "pause", "step", "resume",
     ),
-    "Look": ("status", "top", "view", "trace"),
+    "Inspect": ("status", "top", "view", "trace"),
     "Plan": ("profile", "simulate", "advise"),
     "ROS 2": (
         "topic", "node", "service", "action", "param", "lifecycle", "interface", "component", "bag",
     ),
     "Set up": ("doctor", "clean", "env", "completion"),
     "Measure": ("bench",),
-    "Case studies": ("ndt", "whill"),
+    "Localize": ("ndt",),
+    "Case studies": ("whill",),
 }  # fmt: skip
 
 
