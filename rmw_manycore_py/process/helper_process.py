@@ -8,7 +8,7 @@
 ```
 
 Arrays are sent out of band, without pickling. The helper ends with `close()`, and with this process
-however it ends.
+however it ends. In a run in virtual time there is none: it would compute while time goes on.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from typing import IO, Any, TypeVar
 from rmw_manycore_program import own_program
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.process.parent_death import dies_with_this_process
+from rmw_manycore_py.process.virtual_time import lives_in_virtual_time
 
 T = TypeVar("T")
 
@@ -55,11 +56,16 @@ class HelperProcess:
     def call(self, function: Callable[..., T], *arguments: Any) -> T:
         """Call a module-level function in the helper; return its result or raise its exception.
 
-        A dead helper is restarted by the next call.
+        A dead helper is restarted by the next call. In virtual time, which stands while this
+        process computes, the calling thread calls the function itself.
 
         :raises ManycoreError: if the helper dies during the call, or is closed.
         """
         with self._turn:
+            if self._is_closed:
+                raise ManycoreError(f"the {self._name} process was closed")
+            if lives_in_virtual_time():
+                return function(*arguments)
             process = self._running()
             assert process.stdin is not None
             assert process.stdout is not None
@@ -84,8 +90,6 @@ class HelperProcess:
             self._end()
 
     def _running(self) -> subprocess.Popen[bytes]:
-        if self._is_closed:
-            raise ManycoreError(f"the {self._name} process was closed")
         if self._process is not None and self._process.poll() is not None:
             self._end()
         if self._process is None:

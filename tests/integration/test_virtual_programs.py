@@ -42,6 +42,14 @@ def test_a_thread_that_is_ending_lives_in_wall_time(run) -> None:
     assert run("leaver")["leaver"] == [f"{NS_PER_S // 2} True"]
 
 
+def test_time_stands_while_maps_are_built_in_the_background(run) -> None:
+    assert run("builder")["builder"] == ["100 0.0 ", "100 0.0 "]
+
+
+def test_durations_that_nodes_report_are_virtual(run) -> None:
+    assert run("stages")["stages"] == ["0.0"]
+
+
 def test_too_many_threads_are_named(start, timed_mapfile) -> None:
     file = timed_mapfile(timed_programs, "crowd")
     crowded = start(manycore_command("run", file, "--virtual", "--instant"))

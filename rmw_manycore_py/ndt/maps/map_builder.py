@@ -10,7 +10,6 @@ process takes time to start.
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
@@ -22,6 +21,7 @@ from rmw_manycore_py.ndt.maps.map_process import HeldMap, Source
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 from rmw_manycore_py.process.helper_process import HelperProcess, leave_real_time
+from rmw_manycore_py.process.steady import steady_s
 
 NICENESS = 10
 
@@ -105,7 +105,7 @@ class MapBuilder:
         return running
 
     def _build(self, read: Read) -> BuiltMap:
-        start = time.perf_counter()
+        start_s = steady_s()
         voxel_map, held, problem = None, None, ""
         try:
             source = read()
@@ -113,7 +113,7 @@ class MapBuilder:
                 voxel_map, held = self._first(source) if self._is_first else self._next(source)
         except Exception as error:  # on any error, keep the previous map
             problem = what_is_wrong(error)
-        duration_ms = 1e3 * (time.perf_counter() - start)
+        duration_ms = 1e3 * (steady_s() - start_s)
         points, warning = (held.points, held.warning) if held is not None else (None, "")
         return BuiltMap(voxel_map, points, problem, warning, duration_ms)
 

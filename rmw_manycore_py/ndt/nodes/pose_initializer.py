@@ -26,7 +26,7 @@ from rmw_manycore_py.ndt.messages.conversions import (
 )
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
 from rmw_manycore_py.ndt.nodes.support.running import run_node
-from rmw_manycore_py.ndt.nodes.support.steady import steady_s
+from rmw_manycore_py.process.steady import steady_s
 
 VARIANCES = (1.0, 1.0, 0.01, 0.01, 0.01, 0.2)  # m^2, rad^2
 AT_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)  # x, y, z, quaternion

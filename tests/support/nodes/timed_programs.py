@@ -14,6 +14,9 @@ import numpy as np
 
 from rmw_manycore_py import transport
 from rmw_manycore_py.native._transport import now_ns
+from rmw_manycore_py.ndt.maps.map_builder import MapBuilder
+from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.nodes.scan_matcher.stage_times import StageTimes
 
 _START_NS = 10**18
 _POINTS = np.zeros(3, np.float32)
@@ -90,6 +93,29 @@ def crowd() -> None:
         for _ in range(2100):
             threading.Thread(target=time.sleep, args=(1.0,), daemon=True).start()
         time.sleep(0.5)
+
+
+def builder() -> None:
+    """Have maps built in the background; print how long each took by two clocks, in ms."""
+    generator = np.random.default_rng(1)
+    with transport.join():
+        maps = MapBuilder(MatcherOptions())
+        for _ in range(2):  # the second one would be the helper's
+            begin_ns = now_ns()
+            maps.submit(lambda: generator.uniform(-20.0, 20.0, (50_000, 3)))
+            while (built := maps.take()) is None:
+                time.sleep(0.1)
+            passed_ms = (now_ns() - begin_ns) // 1_000_000
+            print(passed_ms, built.duration_ms, built.problem, flush=True)
+        maps.close()
+
+
+def stages() -> None:
+    """Print how long a stage of a scan took that has used 5 ms of CPU time."""
+    with transport.join():
+        stages = StageTimes()
+        _compute()
+        print(stages.total_ms, flush=True)
 
 
 def early() -> None:

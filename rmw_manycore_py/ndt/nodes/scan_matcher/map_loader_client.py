@@ -15,7 +15,7 @@ from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
 from rmw_manycore_py.ndt.nodes.scan_matcher.map_cells import MapCells
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters
-from rmw_manycore_py.ndt.nodes.support.steady import steady_s
+from rmw_manycore_py.process.steady import steady_s
 
 ANSWER_TIMEOUT_S = 30.0  # reading hundreds of megabytes of cells from a slow disk
 

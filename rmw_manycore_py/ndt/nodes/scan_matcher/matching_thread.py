@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from rmw_manycore_py.ndt.nodes.scan_matcher.scan_inbox import ScanInbox, WaitingScan
-from rmw_manycore_py.ndt.nodes.support.steady import steady_s
+from rmw_manycore_py.process.steady import steady_s
 from rmw_manycore_py.process.virtual_time import lives_in_virtual_time
 
 Job = Callable[[], None]

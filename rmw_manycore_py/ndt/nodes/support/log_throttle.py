@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from rmw_manycore_py.ndt.nodes.support.steady import steady_s
+from rmw_manycore_py.process.steady import steady_s
 
 REPEAT_S = 1.0
 NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")  # messages that only differ in numbers count as equal

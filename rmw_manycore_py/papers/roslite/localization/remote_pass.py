@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
-from rmw_manycore_py.ndt.nodes.support.steady import steady_s
+from rmw_manycore_py.process.steady import steady_s
 
 
 @dataclass(frozen=True)

@@ -24,12 +24,12 @@ from rmw_manycore_py.ndt.messages.conversions import nanoseconds, pose_of, stamp
 from rmw_manycore_py.ndt.messages.point_cloud import encode
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
 from rmw_manycore_py.ndt.nodes.support.running import run_node
-from rmw_manycore_py.ndt.nodes.support.steady import steady_s
 from rmw_manycore_py.papers.roslite.laws.lanes import Place
 from rmw_manycore_py.papers.roslite.messages import LATCHED, waypoint_messages
 from rmw_manycore_py.papers.roslite.vehicle.course import LIDAR, Course, sensor_pose
 from rmw_manycore_py.papers.roslite.vehicle.drive_log import DriveLog
 from rmw_manycore_py.papers.roslite2.laptop.plant import Plant, PlantOptions
+from rmw_manycore_py.process.steady import steady_s
 
 STEP_S, SCAN_PERIOD_S = 0.01, 0.1
 LAST_ANSWER_NS = 10**9  # after the last scan

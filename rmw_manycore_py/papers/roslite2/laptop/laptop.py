@@ -7,7 +7,6 @@ import time
 
 from rclpy.node import Node
 
-from rmw_manycore_py.ndt.nodes.support.steady import steady_s
 from rmw_manycore_py.papers.roslite2.course.directory import Course
 from rmw_manycore_py.papers.roslite2.laptop.drive_log import (
     STANDING_M_S,
@@ -19,6 +18,7 @@ from rmw_manycore_py.papers.roslite2.laptop.observer import Observer
 from rmw_manycore_py.papers.roslite2.laptop.operator import Operator
 from rmw_manycore_py.papers.roslite2.laptop.plant import Plant, PlantOptions
 from rmw_manycore_py.papers.roslite2.laptop.wheelchair import Look, Wheelchair
+from rmw_manycore_py.process.steady import steady_s
 
 ARRIVED_M = 0.5
 

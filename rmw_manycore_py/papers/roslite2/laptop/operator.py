@@ -16,10 +16,10 @@ from tier4_external_api_msgs.msg import Heartbeat
 
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, perturbed
 from rmw_manycore_py.ndt.messages.conversions import pose_with_covariance, stamp_of
-from rmw_manycore_py.ndt.nodes.support.steady import steady_s
 from rmw_manycore_py.papers.roslite2.laptop import topics
 from rmw_manycore_py.papers.roslite2.laptop.drive_log import STANDING_M_S
 from rmw_manycore_py.papers.roslite2.laptop.plant import Plant
+from rmw_manycore_py.process.steady import steady_s
 
 PERIOD_S = 0.1  # heartbeat period
 ENGAGE_S, CLEAR_S = 1.0, 2.0  # retry periods

@@ -14,11 +14,11 @@ from sensor_msgs.msg import Imu
 from whill_msgs.msg import ModelCr2State
 
 from rmw_manycore_py.ndt.messages.conversions import stamp_of
-from rmw_manycore_py.ndt.nodes.support.steady import steady_s
 from rmw_manycore_py.papers.roslite2.laptop import topics
 from rmw_manycore_py.papers.roslite2.laptop.drive_log import Command
 from rmw_manycore_py.papers.roslite2.laptop.plant import Plant
 from rmw_manycore_py.papers.roslite2.laws.odometry import motors_of_speed
+from rmw_manycore_py.process.steady import steady_s
 
 STEP_S = 0.01  # period of the IMU
 STEPS_PER_STATE, STEPS_PER_SCAN = 4, 10
