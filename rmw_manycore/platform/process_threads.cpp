@@ -82,8 +82,16 @@ bool is_sleep(const Call & call, bool strict) {
   }
 }
 
+/// Whether an open file is one of a file system: a read of it waits for a disk, and for nobody.
+bool is_file(const std::string & link) {
+  struct stat status {};
+  return stat(link.c_str(), &status) == 0 && S_ISREG(status.st_mode);
+}
+
 std::string name_of(const Call & call) {
   switch (call.number) {
+    case SYS_read:
+      return "reads a file";
     case SYS_futex:
       return "waits for a lock, for another process, or with a timeout of the wall clock";
     case SYS_clock_nanosleep:
@@ -141,7 +149,10 @@ ProcessThreads::Look ProcessThreads::look_once(
       continue;  // Yama hides it: taken to sleep
     }
     const Call call = parse(*text);
-    if (!is_sleep(call, contains(strict, tid))) {
+    const bool reads_file =
+      call.number == SYS_read &&
+      is_file(directory_ + "/" + std::to_string(tid) + "/fd/" + std::to_string(call.arguments[0]));
+    if (reads_file || !is_sleep(call, contains(strict, tid))) {
       return {false, tid, call.number < 0 ? "" : name_of(call)};
     }
     seen += *text + read_all(files.turns).value_or("");

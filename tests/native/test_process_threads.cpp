@@ -4,6 +4,11 @@
 // wake-up between two looks is always seen: virtual_time.pml does.
 #include <doctest/doctest.h>
 
+#include <fcntl.h>
+#include <linux/userfaultfd.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -58,6 +63,23 @@ void wait_for_another_process() {
     futex_wait(word, 0, std::nullopt);
   }
 }
+/// Reads a file into memory that never comes, as from a disk that does not answer. Needs root.
+void read_for_ever() {
+  const auto faults = static_cast<int>(syscall(SYS_userfaultfd, O_CLOEXEC));
+  uffdio_api api{UFFD_API, 0, 0};
+  constexpr size_t size = 4096;
+  void * const memory =
+    mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  uffdio_register missing{};
+  missing.range = {reinterpret_cast<uint64_t>(memory), size};
+  missing.mode = UFFDIO_REGISTER_MODE_MISSING;
+  if (
+    faults < 0 || ioctl(faults, UFFDIO_API, &api) != 0 ||
+    ioctl(faults, UFFDIO_REGISTER, &missing) != 0) {
+    _exit(EXIT_FAILURE);
+  }
+  (void)!read(open("/proc/self/exe", O_RDONLY), memory, size);
+}
 void sleep_long() { usleep(1'000'000'000); }
 
 /// Looks until the threads have come so far.
@@ -95,6 +117,15 @@ TEST_CASE("a thread that another process computes for is awake, and named") {
   const ProcessThreads::Look look = look_until(child.pid(), waits);
   CHECK(!look.asleep);
   CHECK(look.doing == "waits for a lock, for another process, or with a timeout of the wall clock");
+}
+
+TEST_CASE("a thread that waits for a file is awake, and named") {
+  if (geteuid() != 0) {
+    return;
+  }
+  const TwoThreads child(wait_for_another, read_for_ever);
+  const auto reads = [](const auto & look) { return look.doing == "reads a file"; };
+  CHECK(!look_until(child.pid(), reads).asleep);
 }
 
 TEST_CASE("a thread that computes is awake, though another one sleeps") {
