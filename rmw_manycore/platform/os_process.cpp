@@ -61,6 +61,10 @@ FileDescriptor open_pidfd(pid_t pid) {
   return fd;
 }
 
+void kill_process(const FileDescriptor & pidfd) noexcept {
+  syscall(SYS_pidfd_send_signal, pidfd.get(), SIGKILL, nullptr, 0);
+}
+
 bool pin_to_cpu(int host_cpu) noexcept {
   cpu_set_t cpus;
   CPU_ZERO(&cpus);

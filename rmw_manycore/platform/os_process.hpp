@@ -13,6 +13,9 @@ namespace manycore {
 /// A pidfd, which becomes readable when `pid` ends; empty if there is no such process.
 FileDescriptor open_pidfd(pid_t pid);
 
+/// Sends SIGKILL to the process of a pidfd; no other one can have taken its id.
+void kill_process(const FileDescriptor & pidfd) noexcept;
+
 /// Pins the calling thread, and threads that it starts later, to one host CPU. False if not
 /// permitted.
 bool pin_to_cpu(int host_cpu) noexcept;

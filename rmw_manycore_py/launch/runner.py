@@ -119,7 +119,7 @@ class Runner:
             while not self._is_over():
                 self._start_next(duration_s)
                 self._end_without_nodes()
-                for key, _ in self._selector.select(self._timeout_s()):
+                for key, _ in sorted(self._selector.select(self._timeout_s()), key=self._is_later):
                     handler: Handler = key.data
                     handler()
                 self._keep_deadlines()
@@ -128,6 +128,10 @@ class Runner:
     def close(self) -> None:
         """Close the selector."""
         self._selector.close()
+
+    def _is_later(self, ready: tuple[selectors.SelectorKey, int]) -> bool:
+        """Return whether to handle what the timekeeper reports before this: why a node ended."""
+        return ready[0].fileobj is not self._timekeeper
 
     def _destroy_all(self) -> None:
         for node in self._nodes:
@@ -334,6 +338,9 @@ class Runner:
             if report.event is not None:
                 self.report(report.event)
                 continue
+            if report.kind == "killed":
+                self._nodes[int(report.text)].is_killed_as_asked = True
+                continue
             if report.kind == "ended":
                 self.unwatch(self._timekeeper)
             self._is_broken |= report.kind != "end" and not self._stopping
@@ -376,16 +383,8 @@ class Runner:
         ending = node.ending
         assert ending is not None
         tail = node.last_lines if ending.failed else ()
-        self.report(
-            Ended(
-                node.program.name,
-                node.state.value,
-                ending.reason,
-                ending.exit_status,
-                ending.signal,
-                tail,
-            )
-        )
+        name, state = node.program.name, node.state.value
+        self.report(Ended(name, state, ending.reason, ending.exit_status, ending.signal, tail))
 
     def report(self, event: Event) -> None:
         """Report an event; stop the run if the output is closed."""

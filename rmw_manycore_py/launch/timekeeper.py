@@ -51,7 +51,8 @@ class VirtualTime:
 class TimekeeperReport:
     """What the timekeeper reports.
 
-    :ivar kind: `end` after the duration, `still` or `held` with why, `broken` if time ended early.
+    :ivar kind: `end` after the duration, `still` or `held` with why, `broken` if time ended early,
+        `killed` with the rank of a program that is about to be killed as asked.
     """
 
     kind: str

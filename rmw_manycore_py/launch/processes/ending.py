@@ -42,6 +42,14 @@ class Ending:
     signal: str | None = None
 
 
+KILLED_AS_ASKED = Ending(False, "killed as asked", signal=signal.SIGKILL.name)
+
+
+def was_killed(return_code: int) -> bool:
+    """Return whether a process was killed, or a shell whose last program was."""
+    return return_code in (-signal.SIGKILL, 128 + signal.SIGKILL)
+
+
 def judge(
     return_code: int, state: NodeState, last_lines: Sequence[str] = (), came_up: bool = True
 ) -> Ending:

@@ -10,7 +10,13 @@ import time
 from collections.abc import Callable
 
 from rmw_manycore_py.launch.processes.birth import pinned_to
-from rmw_manycore_py.launch.processes.ending import Ending, judge, not_started
+from rmw_manycore_py.launch.processes.ending import (
+    KILLED_AS_ASKED,
+    Ending,
+    judge,
+    not_started,
+    was_killed,
+)
 from rmw_manycore_py.launch.processes.output import OutputReader
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import STOP_STEPS, NodeState, check_transition
@@ -41,6 +47,7 @@ class NodeProcess:
         self.is_wanted_again = False  # a new process replaces it when it is over
         self.is_held = False  # stopped by request: not respawned, the run continues
         self.is_removed = False  # held, and no node of the run any more
+        self.is_killed_as_asked = False  # at a virtual time: not a failure
         self.was_asked_for = False  # restarted by request: a failing start does not end the run
         self.pidfd = -1  # open while the node runs
         self.came_up = not program.supervised  # supervised processes report it
@@ -168,7 +175,10 @@ class NodeProcess:
         if self._readiness:
             self.came_up = self._readiness.close()
             self._readiness = None
-        self._end(judge(return_code, self.state, self.last_lines, self.came_up))
+        if self.is_killed_as_asked and was_killed(return_code):
+            self._end(KILLED_AS_ASKED)
+        else:
+            self._end(judge(return_code, self.state, self.last_lines, self.came_up))
         return lines
 
     def destroy(self) -> None:
