@@ -50,6 +50,11 @@ def test_durations_that_nodes_report_are_virtual(run) -> None:
     assert run("stages")["stages"] == ["0.0"]
 
 
+def test_a_pass_of_a_thread_with_a_seat_is_late_in_virtual_time(run) -> None:
+    (late_s,) = run("passes", options=("--factor", "1"))["passes"]
+    assert 1.0 <= float(late_s) < 1.5
+
+
 def test_too_many_threads_are_named(start, timed_mapfile) -> None:
     file = timed_mapfile(timed_programs, "crowd")
     crowded = start(manycore_command("run", file, "--virtual", "--instant"))

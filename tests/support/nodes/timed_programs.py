@@ -13,10 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from rmw_manycore_py import transport
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.native._transport import now_ns
 from rmw_manycore_py.ndt.maps.map_builder import MapBuilder
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.nodes.scan_matcher.stage_times import StageTimes
+from rmw_manycore_py.papers.roslite.localization.remote_pass import RemotePass
 
 _START_NS = 10**18
 _POINTS = np.zeros(3, np.float32)
@@ -116,6 +118,25 @@ def stages() -> None:
         stages = StageTimes()
         _compute()
         print(stages.total_ms, flush=True)
+
+
+def passes() -> None:
+    """Have a thread give up a pass that takes longer than a second; print when, in s."""
+    with transport.join() as member:
+        publisher = member.publisher("/points", np.float32)
+        remote = RemotePass(lambda *_: publisher.publish(_POINTS), parts=1, timeout_s=1.0)
+
+        def ask() -> None:
+            try:
+                remote(np.eye(4))
+            except ManycoreError:
+                print((now_ns() - _START_NS) / 1e9, flush=True)
+
+        thread = threading.Thread(target=ask)
+        thread.start()
+        while thread.is_alive():
+            time.sleep(0.25)
+            remote.look()
 
 
 def early() -> None:

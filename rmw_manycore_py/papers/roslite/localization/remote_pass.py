@@ -25,8 +25,15 @@ class Part:
     sums: NDArray[np.float64]
 
 
+class PassesEndedError(Exception):
+    """The node ends while a pass is under way."""
+
+
 class RemotePass:
     """Asks for passes of one scan after the other, and waits for all their parts.
+
+    It waits without a timeout, which would be one of the wall clock: a timer of the node looks
+    whether a pass is late.
 
     :param ask: called with stamp, number and pose (4, 4) of a pass.
     :param parts: number of derivatives.
@@ -39,7 +46,9 @@ class RemotePass:
         self._ask = ask
         self._parts = parts
         self._timeout_s = timeout_s
-        self._arrived: queue.SimpleQueue[Part] = queue.SimpleQueue()
+        self._arrived: queue.SimpleQueue[Part | None] = queue.SimpleQueue()
+        self._has_ended = False
+        self._begun_s: float | None = None  # a pass under way
         self._scan_ns = 0
         self._number = 0  # of the pass, in the current scan
 
@@ -51,24 +60,49 @@ class RemotePass:
         """Take a part, from another thread; those of earlier passes are ignored."""
         self._arrived.put(part)
 
+    def look(self) -> None:
+        """End a pass that is late, from another thread."""
+        if self._is_late():
+            self._arrived.put(None)
+
+    def close(self) -> None:
+        """End the passes, from another thread."""
+        self._has_ended = True
+        self._arrived.put(None)
+
+    def _is_late(self) -> bool:
+        begun_s = self._begun_s
+        return begun_s is not None and steady_s() >= begun_s + self._timeout_s
+
     def __call__(self, pose: Matrix) -> NDArray[np.float64]:
-        """Return the sums at a pose; raises ManycoreError if a part does not come."""
+        """Return the sums at a pose.
+
+        :raises ManycoreError: if a part does not come in time.
+        :raises PassesEndedError: if the passes were closed.
+        """
         self._number += 1
+        self._begun_s = steady_s()
         self._ask(self._scan_ns, self._number, pose)
-        found: dict[int, NDArray[np.float64]] = {}
-        deadline_s = steady_s() + self._timeout_s
-        while len(found) < self._parts:
-            try:
-                part = self._arrived.get(timeout=max(deadline_s - steady_s(), 0.0))
-            except queue.Empty:
-                if steady_s() < deadline_s:  # virtual time has not passed
-                    continue
-                raise ManycoreError(
-                    f"pass {self._number}: {len(found)} of {self._parts} derivatives answered in "
-                    f"{self._timeout_s:g} s; the scan is left out"
-                ) from None
-            if (part.scan_ns, part.pass_number) == (self._scan_ns, self._number):
-                found[part.part] = part.sums
+        try:
+            found = self._found()
+        finally:
+            self._begun_s = None
         # Always in the same order, whichever part came first.
         total: NDArray[np.float64] = np.sum([found[part] for part in sorted(found)], axis=0)
         return total
+
+    def _found(self) -> dict[int, NDArray[np.float64]]:
+        found: dict[int, NDArray[np.float64]] = {}
+        while len(found) < self._parts:
+            part = self._arrived.get()
+            if self._has_ended:
+                raise PassesEndedError
+            if part is None:
+                if self._is_late():  # this pass, not an earlier one
+                    raise ManycoreError(
+                        f"pass {self._number}: {len(found)} of {self._parts} derivatives answered "
+                        f"in {self._timeout_s:g} s; the scan is left out"
+                    )
+            elif (part.scan_ns, part.pass_number) == (self._scan_ns, self._number):
+                found[part.part] = part.sums
+        return found

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -42,9 +41,14 @@ from rmw_manycore_py.papers.roslite.localization.alignment import (
     sums_of,
 )
 from rmw_manycore_py.papers.roslite.localization.options import OPTIONS, TILE_M
-from rmw_manycore_py.papers.roslite.localization.remote_pass import Part, RemotePass
+from rmw_manycore_py.papers.roslite.localization.remote_pass import (
+    Part,
+    PassesEndedError,
+    RemotePass,
+)
 from rmw_manycore_py.papers.roslite.localization.tiles import tiles_of
 from rmw_manycore_py.papers.roslite.messages import LATCHED
+from rmw_manycore_py.process.steady import steady_s
 
 FRAME = "map"
 
@@ -87,6 +91,7 @@ class LidarLocalizer(Node):
             self._ends = True
             self._woken.notify()
         if self._thread.is_alive():
+            self._remote.close()
             self._thread.join()
         super().destroy_node()
 
@@ -113,6 +118,8 @@ class LidarLocalizer(Node):
             PoseWithCovarianceStamped, "initialpose", self._on_initial_pose, LATCHED
         )
         self.create_subscription(PointCloud2, "filtered_points", self._on_scan, 1)
+        if self._p.derivatives:  # a late pass is noticed within a quarter of its timeout
+            self.create_timer(self._p.timeout_s / 4, self._remote.look)
         self.create_subscription(Sums, "ndt_sums", self._on_sums, 10 * max(self._p.derivatives, 1))
 
     def _on_initial_pose(self, message: Any) -> None:
@@ -152,13 +159,15 @@ class LidarLocalizer(Node):
                 self._align(decode(message).astype(np.float32), message.header, prediction)
             except (CloudError, ManycoreError) as error:
                 self._complain(f"filtered_points: {error}")
+            except PassesEndedError:
+                return
             except RCLError:
                 if self.context.ok():
                     raise
                 return  # ended by a signal while a scan was aligned
 
     def _align(self, scan: NDArray[np.float32], header: Any, prediction: Prediction) -> None:
-        begin_s = time.monotonic()
+        begin_s = steady_s()
         scan_ns = nanoseconds(header.stamp)
         self._remote.begin(scan_ns)
         before, before_s = prediction.pose, prediction.stamp_s
@@ -179,7 +188,7 @@ class LidarLocalizer(Node):
         self._publish_velocity(before, found.pose, prediction.stamp_s - before_s, header.stamp)
         stat = NDTStat(iteration=passes)
         stat.header.stamp = header.stamp
-        stat.exe_time = 1e3 * (time.monotonic() - begin_s)
+        stat.exe_time = 1e3 * (steady_s() - begin_s)
         stat.score = found.at.score
         self._stats.publish(stat)
 

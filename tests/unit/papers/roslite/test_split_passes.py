@@ -23,7 +23,11 @@ from rmw_manycore_py.papers.roslite.localization.alignment import (
     sums_of,
 )
 from rmw_manycore_py.papers.roslite.localization.options import OPTIONS, TILE_M
-from rmw_manycore_py.papers.roslite.localization.remote_pass import Part, RemotePass
+from rmw_manycore_py.papers.roslite.localization.remote_pass import (
+    Part,
+    PassesEndedError,
+    RemotePass,
+)
 from rmw_manycore_py.papers.roslite.localization.swapping import Pooled, SwappedTiles
 from rmw_manycore_py.papers.roslite.localization.tiles import (
     TileKey,
@@ -176,8 +180,25 @@ def test_a_pass_whose_derivatives_are_silent_is_given_up():
     remote = RemotePass(lambda *_: None, 2, timeout_s=0.05)
     remote.begin(1)
     remote.arrived(Part(1, 1, 0, np.ones(37)))
+    is_over = threading.Event()
+
+    def look() -> None:
+        while not is_over.is_set():
+            remote.look()
+
+    timer = threading.Thread(target=look)
+    timer.start()
     with pytest.raises(ManycoreError, match=r"pass 1: 1 of 2 derivatives answered in 0\.05 s"):
         aligned(np.eye(4), remote, OPTIONS)
+    is_over.set()
+    timer.join()
+
+
+def test_a_pass_that_is_not_late_goes_on_and_ends_with_the_node():
+    remote = RemotePass(lambda *_: remote.look(), 2, timeout_s=60.0)
+    threading.Timer(0.0, remote.close).start()
+    with pytest.raises(PassesEndedError):
+        remote(np.eye(4))
 
 
 def test_a_guess_goes_on_with_the_last_motion():
