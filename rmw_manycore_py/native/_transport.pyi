@@ -305,6 +305,12 @@ def exit_after(delay_s: float, status: int) -> None:
     Also while a call into a library keeps all Python threads waiting.
     """
 
+virtual_now_offset: int
+"""Where the virtual time [ns], 64 bits, is in the timekeeper's page."""
+
+virtual_start_ns: int
+"""Virtual time at the begin of a run."""
+
 def platforms() -> list[str]:
     """Return the names of this user's platforms, dead or alive."""
 

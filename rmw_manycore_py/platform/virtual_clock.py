@@ -12,8 +12,7 @@ from pathlib import Path
 from rmw_manycore_py.native import _transport
 
 _FILE = "virtual_time"  # in the platform's directory: the path of the timekeeper's page
-_START_NS = 10**18
-_NOW = struct.Struct("<8xq")  # behind the page's magic number (rmw_manycore/virtual_time/seats.hpp)
+_NOW = struct.Struct("q")
 
 
 @contextmanager
@@ -38,9 +37,9 @@ def virtual_clock(platform: str) -> Callable[[], int] | None:
             memory = mmap.mmap(file.fileno(), mmap.PAGESIZE, prot=mmap.PROT_READ)
     except (OSError, RuntimeError, ValueError):  # or what a killed run has left
         return None
-    return lambda: int(_NOW.unpack_from(memory)[0])
+    return lambda: int(_NOW.unpack_from(memory, _transport.virtual_now_offset)[0])
 
 
 def passed_s(clock: Callable[[], int] | None) -> float | None:
     """Return the seconds that have passed in virtual time."""
-    return None if clock is None else (clock() - _START_NS) / 1e9
+    return None if clock is None else (clock() - _transport.virtual_start_ns) / 1e9

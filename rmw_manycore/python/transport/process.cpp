@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <memory>
 #include <utility>
 
@@ -24,6 +25,7 @@
 #include "python/transport/type_hash.hpp"
 #include "python/transport/words.hpp"
 #include "virtual_time/door.hpp"
+#include "virtual_time/seats.hpp"
 
 namespace nb = nanobind;
 
@@ -192,6 +194,8 @@ void bind_process(nb::module_ & module) {
       exit_after(std::chrono::nanoseconds(static_cast<int64_t>(delay_s * ns_per_s)), status);
     },
     nb::arg("delay_s"), nb::arg("status"));
+  module.attr("virtual_now_offset") = offsetof(virtual_time::Page, now_ns);
+  module.attr("virtual_start_ns") = virtual_time::start_ns;
   const nb::class_<BoundNode> node(module, "Node", nb::is_weak_referenceable());
   nb::class_<BoundProcess> bound(module, "Process");
   bound
