@@ -45,12 +45,15 @@ OPTIONS = {
     f"{OWN}, steps to 0.1 mm": MatcherOptions(
         voxel_size_m=VOXEL_SIZE_M, search="radius", trans_epsilon=1e-4, max_iterations=100
     ),
-    f"{OWN}, polished with 1 m": MatcherOptions(
-        voxel_size_m=VOXEL_SIZE_M, polish_levels=(0.5,), search="radius"
+    f"{OWN}, not polished": MatcherOptions(
+        voxel_size_m=VOXEL_SIZE_M, polish_levels=(), search="radius"
     ),
-    f"{OWN}, 1 m last": MatcherOptions(voxel_size_m=1.0, coarse_levels=(4.0, 2.0), search="radius"),
-    f"{OWN}, 0.5 m last": MatcherOptions(
-        voxel_size_m=0.5, coarse_levels=(8.0, 4.0, 2.0), search="radius"
+    f"{OWN}, 1 m last": MatcherOptions(
+        voxel_size_m=1.0,
+        coarse_levels=(4.0, 2.0),
+        wide_levels=(8.0,),
+        polish_levels=(),
+        search="radius",
     ),
 }
 OFF_REFERENCE = "off the reference pose"

@@ -22,6 +22,7 @@ ROUNDS = 4
 OPTIONS = MatcherOptions(
     voxel_size_m=0.5,
     coarse_levels=(4.0, 2.0),
+    polish_levels=(),
     search="radius",
     trans_epsilon=1e-4,
     max_iterations=60,

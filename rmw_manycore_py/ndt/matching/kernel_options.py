@@ -38,11 +38,15 @@ def coarse_options(options: MatcherOptions, factor: float) -> _ndt.MapOptions:
 
 
 def polish_options(options: MatcherOptions, factor: float) -> _ndt.MapOptions:
-    """Return the build options of a level that refines poses."""
+    """Return the build options of a level that refines poses.
+
+    Its covariance is always PCL's: the identity of the others widens small voxels, of few points,
+    beyond their own size.
+    """
     return _ndt.MapOptions(
         voxel_size_m=factor * options.voxel_size_m,
         search=options.search,
-        covariance=options.voxel_covariance,
+        covariance="pcl",
         min_points_per_voxel=options.min_points_per_voxel,
         widening_m=0.0,
     )

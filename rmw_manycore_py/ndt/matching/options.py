@@ -21,7 +21,8 @@ class MatcherOptions:
     """Options of map and matcher; the defaults are Autoware's where it has them.
 
     Exceptions are ``coarse_levels``, ``wide_levels`` and ``voxel_covariance``, which enlarge the
-    basin of convergence, and ``polish_levels`` (docs/design/ndt.md).
+    basin of convergence, and ``polish_levels``, which make poses more accurate
+    (docs/design/ndt.md).
 
     :param voxel_size_m: edge of a voxel; "resolution" in Autoware and PCL.
     :param coarse_levels: maps a scan is aligned to first, as multiples of the voxel size in
@@ -30,7 +31,8 @@ class MatcherOptions:
         the voxel size; only those coarser than all of ``coarse_levels`` count. Without any, or
         without coarse levels, no second look is taken.
     :param polish_levels: maps that only refine the pose found, as multiples of the voxel size in
-        decreasing order; none without coarse levels. Scores and covariances remain those of
+        decreasing order; none without coarse levels or with regularization, whose weight is meant
+        for the score of ``voxel_size_m``. Scores and covariances of poses remain those of
         ``voxel_size_m``.
     :param search: voxel neighbourhood of a point. ``radius``: voxels whose mean is within one voxel
         size (PCL, Autoware); ``direct7``: its own and those across the six faces; ``direct1``: its
@@ -62,7 +64,7 @@ class MatcherOptions:
     voxel_size_m: float = 2.0
     coarse_levels: tuple[float, ...] = (2.0,)
     wide_levels: tuple[float, ...] = (4.0,)
-    polish_levels: tuple[float, ...] = ()
+    polish_levels: tuple[float, ...] = (0.5,)
     search: Search = "direct7"
     voxel_covariance: VoxelCovariance = "pcl"
     min_points_per_voxel: int = 6
@@ -108,7 +110,8 @@ class MatcherOptions:
     @property
     def polishing_levels(self) -> tuple[float, ...]:
         """Return the polish levels that count."""
-        return self.polish_levels if self.coarse_levels else ()
+        is_plain = self.coarse_levels and not self.regularization_scale_factor
+        return self.polish_levels if is_plain else ()
 
     @property
     def coarser_levels(self) -> tuple[float, ...]:

@@ -37,7 +37,9 @@ def matcher_options(parameters: MatcherParameters, own: OwnParameters) -> Matche
         trans_epsilon=parameters.trans_epsilon,
         max_iterations=parameters.max_iterations,
         outlier_ratio=own.outlier_ratio,
-        regularization_scale_factor=parameters.regularization_scale,
+        regularization_scale_factor=(
+            parameters.regularization_scale if parameters.regularization else 0.0
+        ),
         pose_covariance=POSE_COVARIANCES[parameters.covariance_type],
         offsets_m=_offsets(parameters),
         temperature=parameters.temperature,

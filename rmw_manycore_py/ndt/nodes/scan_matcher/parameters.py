@@ -106,7 +106,7 @@ class OwnParameters:
     search: Search = parameter("ndt.search", "radius", choices=("radius", "direct7", "direct1"))
     coarse_levels: tuple[float, ...] = parameter("ndt.coarse_levels", (2.0,))
     wide_levels: tuple[float, ...] = parameter("ndt.wide_levels", (4.0,))
-    polish_levels: tuple[float, ...] = parameter("ndt.polish_levels", ())
+    polish_levels: tuple[float, ...] = parameter("ndt.polish_levels", (0.5,))
     voxel_covariance: VoxelCovariance | Unchosen = parameter(
         "ndt.covariance", "", choices=("", "autoware", "pcl", "pclomp")
     )

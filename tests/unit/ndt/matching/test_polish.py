@@ -12,13 +12,16 @@ from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.nodes.scan_matcher.matcher_options import matcher_options
+from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
 from support.samples.ndt_world import errors, pose, scan_at, street
 
 pytestmark = pytest.mark.unit
 
 WORLD = street()
-PLAIN = MatcherOptions(polish_levels=())
-POLISHING = replace(PLAIN, polish_levels=(0.5,))
+POLISHING = MatcherOptions()
+PLAIN = replace(POLISHING, polish_levels=())
+PLACES_M = np.linspace(30, 50, 10)
 
 
 def matcher(options: MatcherOptions, world: Points = WORLD) -> SerialMatcher:
@@ -31,7 +34,7 @@ def test_poses_are_better_and_scores_those_of_the_voxel_size():
     plain, polishing = matcher(PLAIN), matcher(POLISHING)
     generator = np.random.default_rng(2)
     before_m, after_m = [], []
-    for x in np.linspace(30, 50, 10):
+    for x in PLACES_M:
         true = pose(x, 0.5, 1.8, 0.01, -0.02, 0.3)
         scan, guess = scan_at(WORLD, true), poses.perturbed(true, 0.5, 0.05, generator)
         found = polishing.align(scan, guess)
@@ -51,10 +54,38 @@ def test_where_the_map_is_too_sparse_for_finer_voxels_nothing_changes():
     np.testing.assert_allclose(found[0].T_map_sensor, found[1].T_map_sensor, atol=0.005)
 
 
-def test_without_coarse_levels_nothing_is_polished():
-    alone = replace(POLISHING, coarse_levels=())
-    assert alone.polishing_levels == ()
-    assert VoxelMap.from_points(WORLD, alone).polishing == 0
+def test_the_identity_of_autowares_covariance_does_not_widen_finer_voxels():
+    as_autoware = matcher(replace(POLISHING, voxel_covariance="autoware"))
+    plain = matcher(PLAIN)
+    generator = np.random.default_rng(3)
+    plain_m, polished_m = [], []
+    for x in PLACES_M:
+        true = pose(x, 0.5, 1.8, 0.01, -0.02, 0.3)
+        scan, guess = scan_at(WORLD, true), poses.perturbed(true, 0.5, 0.05, generator)
+        plain_m.append(errors(plain.align(scan, guess).T_map_sensor, true)[0])
+        polished_m.append(errors(as_autoware.align(scan, guess).T_map_sensor, true)[0])
+    assert np.median(polished_m) < np.median(plain_m)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [{"coarse_levels": ()}, {"regularization_scale_factor": 0.01}],
+    ids=["one level", "regularized"],
+)
+def test_where_nothing_is_polished(changed):
+    unpolished = replace(POLISHING, **changed)
+    assert unpolished.polishing_levels == ()
+    assert VoxelMap.from_points(WORLD, unpolished).polishing == 0
+
+
+@pytest.mark.parametrize(
+    ("regularization", "behaviour", "levels"),
+    [(False, "robust", (0.5,)), (True, "robust", ()), (False, "autoware", ())],
+)
+def test_when_a_node_polishes(regularization, behaviour, levels):
+    parameters = replace(MatcherParameters(), regularization=regularization)
+    own = replace(OwnParameters(), behaviour=behaviour)
+    assert matcher_options(parameters, own).polishing_levels == levels
 
 
 @pytest.mark.parametrize("levels", [(1.0,), (0.25, 0.5), (0.001,)])

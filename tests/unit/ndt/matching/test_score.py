@@ -104,7 +104,7 @@ def central(scan: Points, at: tuple[float, ...], size_m: float) -> Points:
 
 @pytest.mark.parametrize("angles", [(0.01, -0.02, 0.3), (0.4, -0.7, 2.5), (-1.2, 0.9, -0.4)])
 def test_gradient_and_hessian_are_those_of_the_score(angles: tuple[float, float, float]) -> None:
-    options = replace(MatcherOptions(), search="direct1", voxel_covariance="autoware")
+    options = MatcherOptions(polish_levels=(), search="direct1", voxel_covariance="autoware")
     voxel_map = VoxelMap.from_points(WORLD, options)
     native = _ndt.SerialMatcher(match_options(options))
     true = (*TRUE[:3], *angles)

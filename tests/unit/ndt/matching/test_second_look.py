@@ -117,7 +117,7 @@ def test_levels_of_a_second_look() -> None:
     assert OPTIONS.coarser_levels == (4.0, 2.0)
     assert replace(OPTIONS, coarse_levels=()).coarser_levels == ()
     assert replace(OPTIONS, coarse_levels=(4.0, 2.0)).second_look_levels == ()
-    assert len(MAP.levels) == 3
-    assert (MAP.first, MAP.scored, MAP.polishing) == (1, 2, 0)
+    assert len(MAP.levels) == 4
+    assert (MAP.first, MAP.scored, MAP.polishing) == (1, 2, 1)
     with pytest.raises(ManycoreError, match="coarse_levels: expected at most 5 with wide_levels"):
         replace(OPTIONS, wide_levels=(64.0, 32.0, 16.0, 8.0, 4.0))
