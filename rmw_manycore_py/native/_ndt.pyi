@@ -154,34 +154,47 @@ class SearchMap:
     """Where something is in a voxel map, in columns of 1 m, in memory that workers share."""
 
     def __init__(self, voxel_map: VoxelMap) -> None: ...
-    @property
-    def size_bytes(self) -> int: ...
+    @staticmethod
+    def bytes_for(voxel_map: VoxelMap) -> int:
+        """Return the bytes of a voxel map's search map, before it is built."""
+
+class SearchOptions:
+    """What is searched.
+
+    :param yaws: number of directions in a turn.
+    :param kept_permille: places with fewer of the best one's points are not kept.
+    :param searched_yaws: number of directions that are searched, from `first_yaw` on.
+    """
+
+    def __init__(
+        self,
+        *,
+        yaws: int,
+        kept_permille: int,
+        centre_m: tuple[float, float],
+        radius_m: float,
+        first_yaw: int,
+        searched_yaws: int,
+    ) -> None: ...
 
 class PlaceSearch:
     """A search of the places at which most of some points are at something in the map.
 
     :param points: (n, 3) [m] of a level scan: x, y from the sensor on, z above the ground.
-    :param yaws: number of directions that are compared.
-    :param kept_permille: places with fewer of the best one's points are not kept.
     """
 
     def __init__(
-        self,
-        search_map: SearchMap,
-        points: NDArray[np.float32],
-        yaws: int,
-        kept_permille: int,
-        centre_m: tuple[float, float],
-        radius_m: float,
+        self, search_map: SearchMap, points: NDArray[np.float32], options: SearchOptions
     ) -> None: ...
+    @staticmethod
+    def bytes_for(search_map: SearchMap, points: int, options: SearchOptions) -> int:
+        """Return the bytes of a search for some points, before it is laid out."""
+
     def order_roots(self) -> None:
         """Sort what the first phase has ranked, for the second one."""
 
     def found(self, limit: int) -> list[tuple[float, float, float, float, int]]:
         """Return x, y, ground [m], yaw [rad] and points of distinct places, best first."""
-
-    @property
-    def size_bytes(self) -> int: ...
 
 class WorkerGroup:
     """Matches on worker processes that run `program`, one per host CPU."""

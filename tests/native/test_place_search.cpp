@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <thread>
 #include <vector>
@@ -87,9 +88,30 @@ uint32_t max_points(const SearchMap & map, const Sketch & sketch, const Node & n
   return max;
 }
 
+/// Maximum of the points of all places in some directions.
+uint32_t max_points(
+  const SearchMap & map, const std::vector<float> & scan, uint32_t first_yaw, uint32_t count) {
+  const auto width = static_cast<uint32_t>(map.header().cells[0]);
+  const auto depth = static_cast<uint32_t>(map.header().cells[1]);
+  const Sketch sketch(scan.data(), scan.size() / 3, yaws, map.header().cells[0]);
+  uint32_t max = 0;
+  for (uint32_t i = 0; i < count; ++i) {
+    for (uint32_t y = search_reach; y < depth - search_reach; y += root_cells) {
+      for (uint32_t x = search_reach; x < width - search_reach; x += root_cells) {
+        const Node root{root_level, x, y, (first_yaw + i) % yaws};
+        max = std::max(max, max_points(map, sketch, root));
+      }
+    }
+  }
+  return max;
+}
+
+constexpr SearchOptions everywhere{yaws, 700, {0, 0}, anywhere_m, 0, yaws};
+
 std::vector<FoundPlace> searched(
-  const SearchMap & map, const std::vector<float> & scan, size_t workers) {
-  PlaceSearch search(map, scan.data(), scan.size() / 3, {yaws, 700, {0, 0}, anywhere_m});
+  const SearchMap & map, const std::vector<float> & scan, size_t workers,
+  const SearchOptions & options = everywhere) {
+  PlaceSearch search(map, scan.data(), scan.size() / 3, options);
   for (const SearchPhase phase : {SearchPhase::bound, SearchPhase::descend}) {
     std::vector<std::thread> threads;
     for (size_t i = 0; i < workers; ++i) {
@@ -155,19 +177,7 @@ TEST_CASE("the best of all places is found, whoever does the work") {
   CHECK(std::hypot(found[0].x_m - 25, found[0].y_m - 30) < 1.5);
   CHECK(std::abs(found[0].yaw_rad - 1.0) < 0.2);
 
-  const auto width = map.header().cells[0];
-  const Sketch sketch(scan.data(), scan.size() / 3, yaws, width);
-  uint32_t max = 0;
-  for (uint32_t yaw = 0; yaw < yaws; ++yaw) {
-    for (uint32_t y = search_reach; y < static_cast<uint32_t>(map.header().cells[1]) - search_reach;
-         y += root_cells) {
-      for (uint32_t x = search_reach; x < static_cast<uint32_t>(width) - search_reach;
-           x += root_cells) {
-        max = std::max(max, max_points(map, sketch, {root_level, x, y, yaw}));
-      }
-    }
-  }
-  CHECK(found[0].points == max);
+  CHECK(found[0].points == max_points(map, scan, 0, yaws));
 
   for (const size_t workers : {2, 3, 5}) {
     CHECK(searched(map, scan, workers) == found);
@@ -177,7 +187,7 @@ TEST_CASE("the best of all places is found, whoever does the work") {
 TEST_CASE("a search goes on where it was interrupted") {
   const SearchMap map = search_map(5);
   const std::vector<float> scan = seen_from(5, 30, 20, 2.0);
-  PlaceSearch search(map, scan.data(), scan.size() / 3, {yaws, 700, {0, 0}, anywhere_m});
+  PlaceSearch search(map, scan.data(), scan.size() / 3, everywhere);
   for (const SearchPhase phase : {SearchPhase::bound, SearchPhase::descend}) {
     for (size_t slices = 0; !search.is_done(); ++slices) {
       REQUIRE(slices < 100'000);
@@ -194,18 +204,64 @@ TEST_CASE("a search goes on where it was interrupted") {
 TEST_CASE("only the places within the radius are searched") {
   const SearchMap map = search_map(6);
   const std::vector<float> scan = seen_from(6, 45, 10, 0.5);
-  PlaceSearch search(map, scan.data(), scan.size() / 3, {yaws, 1, {10, 40}, 5.0});
-  for (const SearchPhase phase : {SearchPhase::bound, SearchPhase::descend}) {
-    search.work(phase, [] { return false; });
-    if (phase == SearchPhase::bound) {
-      search.order_roots();
-    }
-  }
-  const std::vector<FoundPlace> found = search.found(100);
+  constexpr double radius_m = 5;
+  const std::vector<FoundPlace> found =
+    searched(map, scan, 1, {yaws, 1, {10, 40}, radius_m, 0, yaws});
   REQUIRE(!found.empty());
-  for (const FoundPlace & place : found) {  // a root square at the edge is searched as a whole
-    CHECK(std::hypot(place.x_m - 10, place.y_m - 40) < 5 + std::sqrt(2) * root_cells);
+  for (const FoundPlace & place : found) {  // a column at the edge is searched
+    CHECK(std::hypot(place.x_m - 10, place.y_m - 40) < radius_m + 0.7072 * search_cell_m);
   }
+}
+
+TEST_CASE("places of other directions do not keep those that are searched from being found") {
+  const SearchMap map = search_map(7);
+  const std::vector<float> scan = seen_from(7, 25, 20, 0.1);
+  constexpr uint32_t first_yaw = 32;
+  constexpr uint32_t count = 2;
+  constexpr double per_yaw_rad = turn_rad / yaws;
+  const std::vector<FoundPlace> found =
+    searched(map, scan, 2, {yaws, 850, {0, 0}, anywhere_m, first_yaw, count});
+  REQUIRE(!found.empty());
+  const uint32_t max = max_points(map, scan, first_yaw, count);
+  CHECK(found[0].points == max);
+  CHECK(max < max_points(map, scan, 0, yaws) * 850 / 1000);  // else nothing is shown
+  for (const FoundPlace & place : found) {
+    CHECK(place.yaw_rad > (first_yaw - 0.5) * per_yaw_rad);
+    CHECK(place.yaw_rad < (first_yaw + count - 0.5) * per_yaw_rad);
+  }
+  const std::vector<FoundPlace> over_zero =
+    searched(map, scan, 2, {yaws, 850, {0, 0}, anywhere_m, 30, 10});
+  CHECK(over_zero[0].points == max_points(map, scan, 30, 10));
+}
+
+TEST_CASE("roots with high bounds come first, and of equal ones those with low numbers") {
+  const SearchMap map = search_map(8);
+  const std::vector<float> scan = seen_from(8, 20, 30, 1.5);
+  PlaceSearch search(map, scan.data(), scan.size() / 3, everywhere);
+  search.work(SearchPhase::bound, [] { return false; });
+  search.order_roots();
+  const SearchHead & h = search.head();
+  const auto * const bounds = &search.memory().at<const uint16_t>(h.bounds_offset);
+  const auto * const order = &search.memory().at<const uint32_t>(h.order_offset);
+  std::vector<uint32_t> expected(search.roots());
+  std::iota(expected.begin(), expected.end(), 0U);
+  std::stable_sort(expected.begin(), expected.end(), [bounds](uint32_t a, uint32_t b) {
+    return bounds[a] > bounds[b];
+  });
+  CHECK(std::equal(expected.begin(), expected.end(), order));
+  CHECK(bounds[order[0]] > bounds[order[search.roots() - 1]]);
+}
+
+TEST_CASE("the memory of a search is known before it is laid out") {
+  const std::vector<double> town = random_town(9);
+  const MapOptions options{2.0, Search::radius, VoxelCovariance::pcl, 6, 0.0};
+  const VoxelMap voxels = build_voxel_map(town.data(), town.size() / 3, options);
+  const SearchMap map = build_search_map(voxels);
+  CHECK(search_map_bytes(voxels) == map.header().size_bytes);
+  const std::vector<float> scan = seen_from(9, 20, 30, 1.5);
+  const size_t points = scan.size() / 3;
+  const PlaceSearch search(map, scan.data(), points, everywhere);
+  CHECK(search_bytes(map, points, everywhere) == search.head().size_bytes);
 }
 
 }  // namespace manycore::ndt

@@ -27,17 +27,24 @@ struct Square {
   uint16_t y;
 };
 
-/// Squares of the root level with ground, within the radius.
+/// Whether a node has ground, and the circle that is searched touches its square.
+bool is_searched(
+  const SearchMap & map, const SearchOptions & options, uint32_t level, uint32_t x, uint32_t y) {
+  const uint32_t cells = 1U << level;
+  const double away_m = std::hypot(
+    map.middle_m(0, x, cells) - options.centre_m[0],
+    map.middle_m(1, y, cells) - options.centre_m[1]);
+  const double half_diagonal_m = 0.7072 * cells * search_cell_m;
+  return map.floor(level, x, y).is_known() && away_m <= options.radius_m + half_diagonal_m;
+}
+
+/// Squares of the root level that are searched.
 std::vector<Square> squares_of(const SearchMap & map, const SearchOptions & options) {
   std::vector<Square> squares;
   const SearchMapHeader & h = map.header();
-  constexpr double half_diagonal_m = root_cells * search_cell_m * 0.7072;
   for (uint32_t y = 0; y < static_cast<uint32_t>(h.cells[1]); y += root_cells) {
     for (uint32_t x = 0; x < static_cast<uint32_t>(h.cells[0]); x += root_cells) {
-      const double away_m = std::hypot(
-        map.middle_m(0, x, root_cells) - options.centre_m[0],
-        map.middle_m(1, y, root_cells) - options.centre_m[1]);
-      if (map.floor(root_level, x, y).is_known() && away_m <= options.radius_m + half_diagonal_m) {
+      if (is_searched(map, options, root_level, x, y)) {
         squares.push_back(
           {static_cast<uint16_t>(x / root_cells), static_cast<uint16_t>(y / root_cells)});
       }
@@ -75,39 +82,58 @@ uint64_t tile_count(const SearchMap & map) {
          (static_cast<uint64_t>(h.cells[1]) >> tile_level) * sectors;
 }
 
+/// Where the parts of a search's memory are.
+struct Layout {
+  std::vector<Square> squares;
+  uint64_t points_offset;
+  uint64_t squares_offset;
+  uint64_t bounds_offset;
+  uint64_t order_offset;
+  uint64_t tiles_offset;
+  uint64_t size_bytes;
+};
+
+Layout layout_of(const SearchMap & map, size_t count, const SearchOptions & options) {
+  Layout l{squares_of(map, options), align_up(sizeof(SearchHead)), 0, 0, 0, 0, 0};
+  const uint64_t roots = l.squares.size() * options.searched_yaws;
+  l.squares_offset = align_up(l.points_offset + 3 * count * sizeof(float));
+  l.bounds_offset = align_up(l.squares_offset + l.squares.size() * sizeof(Square));
+  l.order_offset = align_up(l.bounds_offset + roots * sizeof(uint16_t));
+  l.tiles_offset = align_up(l.order_offset + roots * sizeof(uint32_t));
+  l.size_bytes = l.tiles_offset + tile_count(map) * sizeof(uint64_t);
+  return l;
+}
+
 SharedMemory laid_out(
   const SearchMap & map, const float * xyz_m, size_t count, const SearchOptions & options) {
-  if (count > max_sketch_points || options.yaws == 0 || options.kept_permille == 0) {
+  const bool is_turn = options.searched_yaws > 0 && options.searched_yaws <= options.yaws;
+  if (count > max_sketch_points || !is_turn || options.kept_permille == 0) {
     throw Error(ErrorCode::invalid_argument, "search: too many points, or no direction");
   }
-  const std::vector<Square> squares = squares_of(map, options);
-  const uint64_t roots = squares.size() * options.yaws;
-  const uint64_t points_offset = align_up(sizeof(SearchHead));
-  const uint64_t squares_offset = align_up(points_offset + 3 * count * sizeof(float));
-  const uint64_t bounds_offset = align_up(squares_offset + squares.size() * sizeof(Square));
-  const uint64_t order_offset = align_up(bounds_offset + roots * sizeof(uint16_t));
-  const uint64_t tiles_offset = align_up(order_offset + roots * sizeof(uint32_t));
-  const uint64_t size_bytes = tiles_offset + tile_count(map) * sizeof(uint64_t);
-  SharedMemory memory = SharedMemory::anonymous("manycore-ndt-search", size_bytes);
+  const Layout l = layout_of(map, count, options);
+  SharedMemory memory = SharedMemory::anonymous("manycore-ndt-search", l.size_bytes);
   auto & h = memory.at<SearchHead>(0);
   static std::atomic<uint64_t> searches{0};
   h.id = ++searches;
   h.points = static_cast<uint32_t>(count);
-  h.yaws = options.yaws;
-  h.kept_permille = options.kept_permille;
-  h.squares = static_cast<uint32_t>(squares.size());
-  h.points_offset = points_offset;
-  h.squares_offset = squares_offset;
-  h.bounds_offset = bounds_offset;
-  h.order_offset = order_offset;
-  h.tiles_offset = tiles_offset;
-  h.size_bytes = size_bytes;
-  std::copy_n(xyz_m, 3 * count, &memory.at<float>(points_offset));
-  std::copy(squares.begin(), squares.end(), &memory.at<Square>(squares_offset));
+  h.options = options;
+  h.squares = static_cast<uint32_t>(l.squares.size());
+  h.points_offset = l.points_offset;
+  h.squares_offset = l.squares_offset;
+  h.bounds_offset = l.bounds_offset;
+  h.order_offset = l.order_offset;
+  h.tiles_offset = l.tiles_offset;
+  h.size_bytes = l.size_bytes;
+  std::copy_n(xyz_m, 3 * count, &memory.at<float>(l.points_offset));
+  std::copy(l.squares.begin(), l.squares.end(), &memory.at<Square>(l.squares_offset));
   return memory;
 }
 
 }  // namespace
+
+uint64_t search_bytes(const SearchMap & map, size_t count, const SearchOptions & options) {
+  return layout_of(map, count, options).size_bytes;
+}
 
 PlaceSearch::PlaceSearch(
   const SearchMap & map, const float * xyz_m, size_t count, const SearchOptions & options)
@@ -117,7 +143,8 @@ PlaceSearch::PlaceSearch(const SearchMap & map, SharedMemory memory)
 : map_(map),
   memory_(std::move(memory)),
   sketch_(
-    &memory_.at<float>(head().points_offset), head().points, head().yaws, map.header().cells[0]) {}
+    &memory_.at<float>(head().points_offset), head().points, head().options.yaws,
+    map.header().cells[0]) {}
 
 void PlaceSearch::work(SearchPhase phase, const std::function<bool()> & is_due) {
   SearchHead & h = head();
@@ -148,16 +175,23 @@ void PlaceSearch::order_roots() {
   SearchHead & h = head();
   const auto * const bounds = &memory_.at<const uint16_t>(h.bounds_offset);
   auto * const order = &memory_.at<uint32_t>(h.order_offset);
-  std::iota(order, order + roots(), 0U);
-  std::stable_sort(
-    order, order + roots(), [bounds](uint32_t a, uint32_t b) { return bounds[a] > bounds[b]; });
+  std::vector<uint32_t> begin(h.points + 2);  // of the roots of each number of missed points
+  for (uint32_t i = 0; i < roots(); ++i) {
+    ++begin[h.points - bounds[i] + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  for (uint32_t i = 0; i < roots(); ++i) {
+    order[begin[h.points - bounds[i]]++] = i;
+  }
   h.next.store(0, std::memory_order_relaxed);
 }
 
 Node PlaceSearch::root(uint32_t index) const noexcept {
   const SearchHead & h = head();
-  const Square square = (&memory_.at<const Square>(h.squares_offset))[index / h.yaws];
-  return {root_level, square.x * root_cells, square.y * root_cells, index % h.yaws};
+  const SearchOptions & o = h.options;
+  const Square square = (&memory_.at<const Square>(h.squares_offset))[index / o.searched_yaws];
+  const uint32_t yaw = (o.first_yaw + index % o.searched_yaws) % o.yaws;
+  return {root_level, square.x * root_cells, square.y * root_cells, yaw};
 }
 
 uint32_t PlaceSearch::bound(const Node & node) const noexcept {
@@ -171,7 +205,7 @@ void PlaceSearch::descend(const Node & node) {
   std::array<uint32_t, 4> bounds{};  // 0: done, or not worth it
   for (uint32_t i = 0; i < quarters.size(); ++i) {
     quarters[i] = {level, node.x + ((i & 1) << level), node.y + ((i >> 1) << level), node.yaw};
-    if (!map_.floor(level, quarters[i].x, quarters[i].y).is_known()) {
+    if (!is_searched(map_, head().options, level, quarters[i].x, quarters[i].y)) {
       continue;
     }
     bounds[i] = bound(quarters[i]);
@@ -203,7 +237,8 @@ void PlaceSearch::keep(const Node & place, uint32_t points) noexcept {
 
 uint32_t PlaceSearch::kept_points() const noexcept {
   const SearchHead & h = head();
-  return std::max(1U, (h.best.load(std::memory_order_relaxed) * h.kept_permille + 999) / 1000);
+  return std::max(
+    1U, (h.best.load(std::memory_order_relaxed) * h.options.kept_permille + 999) / 1000);
 }
 
 uint32_t PlaceSearch::needed(const Node & node) const noexcept {
@@ -217,7 +252,7 @@ std::atomic<uint64_t> & PlaceSearch::tile(const Node & node) const noexcept {
   const SearchHead & h = head();
   const uint64_t wide = static_cast<uint64_t>(map_.header().cells[0]) >> tile_level;
   const uint64_t index = (node.y >> tile_level) * wide + (node.x >> tile_level);
-  const uint64_t sector = node.yaw * sectors / h.yaws;
+  const uint64_t sector = node.yaw * sectors / h.options.yaws;
   return (&memory_.at<std::atomic<uint64_t>>(h.tiles_offset))[index * sectors + sector];
 }
 
@@ -253,7 +288,7 @@ FoundPlace PlaceSearch::place_of(uint64_t kept) const {
   const auto yaw = static_cast<double>(number / width / depth);
   return {
     map_.middle_m(0, x, 1), map_.middle_m(1, y, 1), map_.ground_m(x, y),
-    turn_rad * yaw / head().yaws, points_of(kept)};
+    turn_rad * yaw / head().options.yaws, points_of(kept)};
 }
 
 }  // namespace manycore::ndt

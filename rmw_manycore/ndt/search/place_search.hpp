@@ -20,8 +20,13 @@ struct SearchOptions {
   uint32_t yaws;           ///< directions that are compared
   uint32_t kept_permille;  ///< places with fewer of the best one's points are not kept
   double centre_m[2];      ///< of the places
-  double radius_m;         ///< of the places, with the root squares that it touches; infinity: all
+  double radius_m;         ///< of the places, with the columns that it touches; infinity: all
+  uint32_t first_yaw;      ///< first of the directions that are searched
+  uint32_t searched_yaws;  ///< number of these, from the first on; yaws: all
 };
+
+/// Bytes of a search for `count` points, before it is laid out.
+uint64_t search_bytes(const SearchMap & map, size_t count, const SearchOptions & options);
 
 /// A place that stands out from those around it.
 struct FoundPlace {
@@ -38,8 +43,7 @@ enum class SearchPhase : uint32_t { bound, descend };
 struct SearchHead {
   uint64_t id;  ///< unique in the process that laid it out
   uint32_t points;
-  uint32_t yaws;
-  uint32_t kept_permille;
+  SearchOptions options;
   uint32_t squares;  ///< nodes of the root level that have ground, in one direction
   uint64_t points_offset;
   uint64_t squares_offset;
@@ -67,7 +71,7 @@ public:
   const SearchMap & map() const noexcept { return map_; }
   const SharedMemory & memory() const noexcept { return memory_; }
   SearchHead & head() const noexcept { return memory_.at<SearchHead>(0); }
-  uint32_t roots() const noexcept { return head().squares * head().yaws; }
+  uint32_t roots() const noexcept { return head().squares * head().options.searched_yaws; }
 
   /// Works on the next roots until all are begun or `is_due` holds.
   void work(SearchPhase phase, const std::function<bool()> & is_due);

@@ -255,6 +255,8 @@ double SearchMap::ground_m(uint32_t x, uint32_t y) const noexcept {
   return static_cast<double>((&memory_.at<const float>(header().ground_offset))[y * width + x]);
 }
 
+uint64_t search_map_bytes(const VoxelMap & map) { return lay_out(map).size_bytes; }
+
 SearchMap build_search_map(const VoxelMap & map) {
   const SearchMapHeader header = lay_out(map);
   SharedMemory memory = SharedMemory::anonymous("manycore-ndt-search-map", header.size_bytes);

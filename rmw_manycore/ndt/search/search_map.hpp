@@ -68,6 +68,9 @@ private:
   SharedMemory memory_;
 };
 
+/// Bytes of the search map of a voxel map, before it is built; throws as build_search_map() does.
+uint64_t search_map_bytes(const VoxelMap & map);
+
 /// Builds the search map of a voxel map. Throws Error{invalid_argument} if it has more than 2^26
 /// columns.
 SearchMap build_search_map(const VoxelMap & map);

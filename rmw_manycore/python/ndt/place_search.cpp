@@ -21,11 +21,18 @@ namespace {
 
 using Place = std::tuple<double, double, double, double, uint32_t>;
 
+void init_options(
+  SearchOptions * options, uint32_t yaws, uint32_t kept_permille,
+  const std::pair<double, double> & centre_m, double radius_m, uint32_t first_yaw,
+  uint32_t searched_yaws) {
+  new (options) SearchOptions{yaws,     kept_permille, {centre_m.first, centre_m.second},
+                              radius_m, first_yaw,     searched_yaws};
+}
+
 void init_search(
-  PlaceSearch * search, const SearchMap & map, const FloatPoints & points, uint32_t yaws,
-  uint32_t kept_permille, const std::pair<double, double> & centre_m, double radius_m) {
+  PlaceSearch * search, const SearchMap & map, const FloatPoints & points,
+  const SearchOptions & options) {
   const nb::gil_scoped_release released;
-  const SearchOptions options{yaws, kept_permille, {centre_m.first, centre_m.second}, radius_m};
   new (search) PlaceSearch(map, points.data(), points.shape(0), options);
 }
 
@@ -48,15 +55,19 @@ void bind_place_search(nb::module_ & module) {
         new (map) SearchMap(build_search_map(from));
       },
       nb::arg("voxel_map"))
-    .def_prop_ro("size_bytes", [](const SearchMap & map) { return map.header().size_bytes; });
+    .def_static("bytes_for", &search_map_bytes, nb::arg("voxel_map"));
+  nb::class_<SearchOptions>(module, "SearchOptions")
+    .def(
+      "__init__", &init_options, nb::kw_only(), nb::arg("yaws"), nb::arg("kept_permille"),
+      nb::arg("centre_m"), nb::arg("radius_m"), nb::arg("first_yaw"), nb::arg("searched_yaws"));
   nb::class_<PlaceSearch>(module, "PlaceSearch")
     .def(
-      "__init__", &init_search, nb::arg("search_map"), nb::arg("points"), nb::arg("yaws"),
-      nb::arg("kept_permille"), nb::arg("centre_m"), nb::arg("radius_m"), nb::keep_alive<1, 2>())
+      "__init__", &init_search, nb::arg("search_map"), nb::arg("points"), nb::arg("options"),
+      nb::keep_alive<1, 2>())
+    .def_static(
+      "bytes_for", &search_bytes, nb::arg("search_map"), nb::arg("points"), nb::arg("options"))
     .def("order_roots", &PlaceSearch::order_roots)
-    .def("found", &found, nb::arg("limit"))
-    .def_prop_ro("roots", &PlaceSearch::roots)
-    .def_prop_ro("size_bytes", [](const PlaceSearch & search) { return search.head().size_bytes; });
+    .def("found", &found, nb::arg("limit"));
 }
 
 }  // namespace manycore::ndt::python

@@ -25,7 +25,6 @@ from rmw_manycore_py.ndt.trust.sketch import Sketch
 
 YAWS = 360
 KEPT_PERMILLE = 850  # fewest points of a place that is aligned, relative to the best one
-COMPARED = 256  # places of any heading, of which the wanted ones are taken
 FOLLOWED = 16  # places that are aligned with the whole scan
 SLICE_S = 0.2  # of a search, after which scans may be matched
 AROUND_YAW_RAD = np.radians(45.0)  # of a region without any_yaw
@@ -51,10 +50,24 @@ class Region:
     radius_m: float
     any_yaw: bool
 
-    def has_yaw(self, T: Pose) -> bool:
-        """Return whether a pose's heading is searched."""
-        turn_rad = poses.to_rpy(T)[2] - poses.to_rpy(self.centre)[2]
-        return self.any_yaw or abs(float(np.angle(np.exp(1j * turn_rad)))) < AROUND_YAW_RAD
+    def options(self) -> _ndt.SearchOptions:
+        """Return what is searched."""
+        x, y = self.centre[:2, 3]
+        first_yaw, searched_yaws = 0, YAWS
+        if not self.any_yaw:
+            per_rad = YAWS / (2 * np.pi)
+            yaw_rad = poses.to_rpy(self.centre)[2]
+            first_yaw = int(np.ceil((yaw_rad - AROUND_YAW_RAD) * per_rad))
+            last_yaw = int(np.floor((yaw_rad + AROUND_YAW_RAD) * per_rad))
+            searched_yaws = last_yaw - first_yaw + 1
+        return _ndt.SearchOptions(
+            yaws=YAWS,
+            kept_permille=KEPT_PERMILLE,
+            centre_m=(float(x), float(y)),
+            radius_m=self.radius_m,
+            first_yaw=first_yaw % YAWS,
+            searched_yaws=searched_yaws,
+        )
 
 
 @dataclass(frozen=True)
@@ -114,7 +127,7 @@ def search_steps(
 ) -> Generator[bool, None, Found]:
     """Search as :func:`search` does, in steps of some 0.2 s.
 
-    :param make_room: called with the bytes that are shared with workers.
+    :param make_room: called with the bytes that are shared with workers, before they are used.
     """
     sketch = Sketch.of(scan, region.centre)
     rough: list[Pose] = []
@@ -134,21 +147,20 @@ def _promising(
     matcher: Matcher, sketch: Sketch, region: Region, make_room: Callable[[int], None]
 ) -> Generator[bool, None, list[Pose]]:
     """Find the poses at which most points of a sketch are at something in the map, best first."""
-    x, y = region.centre[:2, 3]
+    voxel_map, options = matcher.map.finest, region.options()
     with translate_native_errors("the search"):
-        search_map = _ndt.SearchMap(matcher.map.finest)
-        places = _ndt.PlaceSearch(
-            *(search_map, sketch.points, YAWS, KEPT_PERMILLE),
-            *((float(x), float(y)), region.radius_m),
-        )
-    make_room(search_map.size_bytes + places.size_bytes)
+        map_bytes = _ndt.SearchMap.bytes_for(voxel_map)
+        make_room(map_bytes)
+        search_map = _ndt.SearchMap(voxel_map)
+        points = len(sketch.points)
+        make_room(map_bytes + _ndt.PlaceSearch.bytes_for(search_map, points, options))
+        places = _ndt.PlaceSearch(search_map, sketch.points, options)
     for descends in (False, True):
         while not matcher.work_on(places, descends=descends, for_s=SLICE_S):
             yield True
         if not descends:
             places.order_roots()
-    found = (sketch.pose(*place[:4]) for place in places.found(COMPARED))
-    return [T for T in found if region.has_yaw(T)][:FOLLOWED]
+    return [sketch.pose(*place[:4]) for place in places.found(FOLLOWED)]
 
 
 def _is_upright(T: Pose, start: Pose) -> bool:

@@ -6,16 +6,19 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rmw_manycore_py.bench.ndt.trust_worlds import Drive, simulated
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
+from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import scan_points
 from rmw_manycore_py.ndt.trust.judge import PoseJudge
 from rmw_manycore_py.ndt.trust.recovery import Recovery, Step
-from rmw_manycore_py.ndt.trust.search import Found, Region, search
+from rmw_manycore_py.ndt.trust.search import Found, Region, search, search_steps
 from support import wait_until
 from support.samples.ndt_world import errors, pose, scan_at, street
 
@@ -151,6 +154,43 @@ def test_a_scan_of_the_ground_alone_fits_nowhere(matcher):
     ground = np.stack([x.ravel(), y.ravel(), np.full(x.size, -1.9)], axis=1)
     assert lost_in(matcher, ground)[1] == "the scan fits nowhere"
     assert lost_in(matcher, np.full((10, 3), np.nan))[1] == "the scan fits nowhere"
+
+
+def shared_names() -> set[str]:
+    """Return the names of this process's shared memory without files."""
+    lines = Path("/proc/self/maps").read_text().splitlines()
+    return {line.split("/memfd:")[1].split()[0] for line in lines if "/memfd:" in line}
+
+
+def test_room_for_a_search_is_made_before_its_memory_is_used(drives, matcher):
+    asked: list[tuple[int, set[str]]] = []
+
+    def make_room(size_bytes: int) -> None:
+        asked.append((size_bytes, shared_names()))
+        if len(asked) == 2:
+            raise ManycoreError("no room")
+
+    region = Region(np.eye(4), np.inf, any_yaw=True)
+    scan = scan_points(drives[0].scan(40))
+    with pytest.raises(ManycoreError, match="no room"):
+        next(search_steps(matcher, scan, region, make_room))
+    (map_bytes, before), (all_bytes, between) = asked
+    assert all_bytes > map_bytes > 0
+    assert "manycore-ndt-search-map" not in before
+    assert "manycore-ndt-search-map" in between
+    assert "manycore-ndt-search" not in between
+
+
+def test_places_of_a_known_heading_are_found_beside_better_ones(drives, matcher):
+    """From the other way round the scan fits worse, but somewhere."""
+    truth = drives[0].poses[40]
+    for turn_rad in (0.0, np.pi):
+        centre = truth @ pose(0.0, 0.0, 0.0, 0.0, 0.0, turn_rad)
+        region = Region(centre, 10.0, any_yaw=False)
+        places = search(matcher, scan_points(drives[0].scan(40)), region).places
+        assert places
+        for place in places:  # aligned from within 45 degrees
+            assert poses.angle_rad(place.T_map_sensor, centre) < np.radians(60.0)
 
 
 def test_a_killed_search_is_reported_and_repeated(world, recovery):
