@@ -113,7 +113,7 @@ def check(python: str, wheel: Path, directory: Path) -> None:
     print(run(programs / "python", "-c", IMPORT_EVERYTHING, env=own, cwd=directory), end="")
     in_place = own | {"RMW_IMPLEMENTATION": "rmw_manycore"}
     print(run(programs / "python", "-c", TAKE_IN_PLACE, env=in_place, cwd=directory), end="")
-    for words in (["demo"], ["run", "talker_listener", "--duration", "3"]):
+    for words in (["demo"], ["run", "talker_listener", "--duration", "15"]):
         output = run(programs / "manycore", *words, env=own, cwd=directory)
         if "I heard: 'Hello World" not in output:
             raise SystemExit(f"the listener received nothing:\n{output}")
