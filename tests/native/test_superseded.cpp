@@ -99,3 +99,32 @@ TEST_CASE("an unreadable message is lost") {
   CHECK(newest->lost() == 1);
   CHECK(newest->superseded() == 0);
 }
+
+TEST_CASE("a message whose room a newer one is written into is superseded") {
+  Fixture f;
+  const auto publisher = f.publisher();
+  const auto newest = f.subscription(keep_last(1));
+  publish(*publisher, 1);
+  Draft draft = publisher->draft(sizeof(Payload));
+  CHECK(take_all(*newest).empty());
+  CHECK(newest->lost() == 0);
+  Payload{1, 2, sizeof(Payload)}.write(draft.data());
+  publisher->publish(std::move(draft), sizeof(Payload), realtime_ns());
+  CHECK(take_all(*newest) == numbers(2, 2));
+  CHECK(newest->superseded() == 1);
+  CHECK(newest->lost() == 0);
+}
+
+TEST_CASE("a message whose replacement is given up is lost") {
+  Fixture f;
+  const auto publisher = f.publisher();
+  const auto newest = f.subscription(keep_last(1));
+  publish(*publisher, 1);
+  {
+    const Draft draft = publisher->draft(sizeof(Payload));
+    CHECK(take_all(*newest).empty());
+  }
+  CHECK(take_all(*newest).empty());
+  CHECK(newest->lost() == 1);
+  CHECK(newest->superseded() == 0);
+}

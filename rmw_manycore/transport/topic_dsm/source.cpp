@@ -334,9 +334,14 @@ Source::Settled Source::settle() noexcept {
     const bool is_waited_for = end_look();
     return is_waited_for ? Settled::finished : Settled::yes;
   }
+  // Load first: outside the phase, the last message is not gone for one that will supersede it.
+  const bool may_be_replaced =
+    keeps_newest_only(*subscription_) && dsm_->phase.load(std::memory_order_seq_cst) % 2 != 0;
   const LastPublished published = last_published();
+  const bool is_due = seat_->accounted.load(std::memory_order_relaxed) < published.sequence;
   const uint64_t known = has_announced_all() ? published.number : noted_;
-  const bool is_settled = published.exact && arrived().is_settled(published.number, known);
+  const bool is_settled = published.exact && !(is_due && may_be_replaced) &&
+                          arrived().is_settled(published.number, known);
   bool is_over = false;
   if (is_settled) {
     count_lost(published.sequence);
