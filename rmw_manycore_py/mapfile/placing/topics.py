@@ -11,6 +11,7 @@ from rmw_manycore_py.mapfile.placing.crossings import CROSSINGS
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode, TopicEntry
 from rmw_manycore_py.ros import ament
 from rmw_manycore_py.ros.names import expand
+from rmw_manycore_py.suggestions import closest
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile
@@ -102,7 +103,9 @@ def _check_installed(mapfile: Mapfile, path: tuple[str, ...], type_name: str) ->
         expected = "a type of an installed package"
         yield mapfile.document.problem(path, expected, f"{type_name} of '{package}'")
     elif type_name not in installed:
-        yield mapfile.document.problem(path, f"a type of the package '{package}'", type_name)
+        meant = closest(type_name, installed)
+        such = f", such as {meant}" if meant else ""
+        yield mapfile.document.problem(path, f"a type of the package '{package}'{such}", type_name)
 
 
 def as_written(mapfile: Mapfile, topic: str) -> str:
