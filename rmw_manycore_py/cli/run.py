@@ -22,7 +22,7 @@ from rmw_manycore_py.cli.common.starting import (
     virtual_time,
 )
 from rmw_manycore_py.launch.events import Event
-from rmw_manycore_py.trace.files import SUFFIXES
+from rmw_manycore_py.trace.files import SUFFIXES, require_format
 
 
 @click.command(
@@ -68,6 +68,8 @@ def command(
 
     In virtual time a run may take less time than --duration. With --instant it is repeatable.
     """
+    if trace is not None:
+        require_format(trace)
     time = virtual_time(mapfile, **virtual)
     run, _ = prepared_run(mapfile, joins, nodes, virtual=time, host=host)
     report = _print_json if as_json else RunPrinter(run.program_names).report

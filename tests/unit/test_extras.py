@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from importlib.metadata import packages_distributions, requires
+from pathlib import Path
 
 import pytest
 
@@ -20,6 +23,13 @@ TEXT = (
     "dreams need no_such (No module named 'no_such'): pip install 'rmw-manycore[sleep]'; "
     "or stay awake"
 )
+
+WITHOUT = """
+import sys
+sys.modules[sys.argv.pop(1)] = None
+from rmw_manycore_py.cli import main
+main()
+"""
 
 
 def requirements(extra: str) -> set[str]:
@@ -47,3 +57,29 @@ def test_its_extra_installs_it(library: Library) -> None:
 def test_an_installed_one_is_returned() -> None:
     assert require(extras.SIMPY).__name__ == "simpy"
     assert missing(extras.SIMPY) == ""
+
+
+@pytest.mark.parametrize(
+    ("library", "command"),
+    [
+        ("matplotlib", ("bench", "ndt", "--plot", "-o", "results")),
+        ("matplotlib", ("ndt", "replay", "drive.npz", "--plot", "replay.png")),
+        ("perfetto", ("run", "no_mapfile.yaml", "--trace", "results.pftrace")),
+    ],
+)
+def test_it_is_reported_before_the_run(
+    library: str, command: tuple[str, ...], tmp_path: Path
+) -> None:
+    for name in ("drive.npz", "no_mapfile.yaml"):
+        (tmp_path / name).touch()
+    run = subprocess.run(
+        [sys.executable, "-c", WITHOUT, library, *command],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert run.returncode != 0
+    assert re.search(rf" needs? {library} .*: pip install", run.stderr)
+    assert "Traceback" not in run.stderr
+    assert list(tmp_path.glob("results*")) == []

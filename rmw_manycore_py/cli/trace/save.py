@@ -11,7 +11,7 @@ from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.output_file import OutputFile
 from rmw_manycore_py.cli.common.printing import counted, echo, print_notices
 from rmw_manycore_py.cli.common.view import require_platform
-from rmw_manycore_py.trace.files import SUFFIXES
+from rmw_manycore_py.trace.files import SUFFIXES, require_format
 from rmw_manycore_py.trace.files.saving import save_recorded
 
 
@@ -32,6 +32,7 @@ def command(output: Path, platform: str) -> None:
 
     Their buffers are freed.
     """
+    require_format(output)
     require_platform(platform)
     trace = save_recorded(platform, output)
     if trace.lost:

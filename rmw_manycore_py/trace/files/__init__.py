@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from rmw_manycore_py import extras
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.trace.events import Trace
 from rmw_manycore_py.trace.files import chrome, perfetto, table
@@ -12,6 +13,12 @@ from rmw_manycore_py.whole_file import replacing
 
 PERFETTO = (".pftrace", ".perfetto-trace")
 SUFFIXES = (".json", ".csv", *PERFETTO)
+
+
+def require_format(path: Path) -> None:
+    """Raise ManycoreError if what writes a file of this suffix is missing: before the events."""
+    if path.suffix in PERFETTO:
+        extras.require(extras.PERFETTO)
 
 
 def save(trace: Trace, path: Path) -> None:

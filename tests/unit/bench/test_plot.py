@@ -4,8 +4,6 @@
 from __future__ import annotations
 
 import csv
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -17,12 +15,6 @@ from rmw_manycore_py.picture.plotting import load_figure
 
 pytestmark = pytest.mark.unit
 
-WITHOUT_MATPLOTLIB = """
-import sys
-sys.modules["matplotlib"] = None
-from rmw_manycore_py.cli import main
-main()
-"""
 RESULTS = [
     *(
         Result("time", f"{n} workers", "ms", (6 / n, 6.5 / n, 7 / n), curve=Curve("workers", n))
@@ -81,29 +73,3 @@ def test_the_table_has_curve_and_spread(tmp_path: Path) -> None:
         rows = list(csv.DictReader(file))
     assert [(row["curve"], row["at"]) for row in rows[2:4]] == [("workers", "4"), ("", "")]
     assert (float(rows[3]["p5"]), float(rows[3]["p95"])) == (200.0, 250.0)
-
-
-@pytest.mark.parametrize(
-    "command",
-    [
-        ("bench", "ndt", "--plot", "-o", "results"),
-        ("ndt", "replay", "drive.npz", "--plot", "replay.png"),
-    ],
-    ids=["bench", "replay"],
-)
-def test_a_missing_matplotlib_is_reported_before_the_run(
-    command: tuple[str, ...], tmp_path: Path
-) -> None:
-    (tmp_path / "drive.npz").touch()
-    run = subprocess.run(
-        [sys.executable, "-c", WITHOUT_MATPLOTLIB, *command],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-    assert run.returncode != 0
-    assert "plots need matplotlib" in run.stderr
-    assert "pip install" in run.stderr
-    assert "Traceback" not in run.stderr
-    assert not (tmp_path / "results").exists()
