@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -21,6 +22,23 @@ pytestmark = [
 
 MISMATCH_STATUS = 102  # as that of rcl
 PREFIX = Path(sys.prefix)
+# What the library needs of Fast CDR; every distribution defines these. With a name that only its
+# own distribution defines, the loader would end a program before the library can say why.
+FAST_CDR = {
+    "Cdr::Cdr(eprosima::fastcdr::FastBuffer&, eprosima::fastcdr::Cdr::Endianness, "
+    "eprosima::fastcdr::CdrVersion)",
+    "Cdr::DEFAULT_ENDIAN",
+    "Cdr::deserialize(char&)",
+    "Cdr::get_serialized_data_length() const",
+    "Cdr::read_encapsulation()",
+    "Cdr::serialize(char)",
+    "Cdr::serialize_encapsulation()",
+    "Cdr::set_encoding_flag(eprosima::fastcdr::EncodingAlgorithmFlag)",
+    "Cdr::state::state(eprosima::fastcdr::Cdr const&)",
+    "FastBuffer::FastBuffer(char*, unsigned long)",
+    "FastBuffer::~FastBuffer()",
+    "exception::Exception",
+}
 LOAD = "import ctypes, sys; ctypes.CDLL(sys.argv[1]); print('loaded')"
 
 
@@ -53,6 +71,17 @@ def test_another_distribution_is_refused_in_one_line(tmp_path: Path) -> None:
 def test_another_release_of_the_distribution_is_accepted(tmp_path: Path) -> None:
     result = load_beside(f"{rmw_manycore_distribution.RMW_VERSION}.99", tmp_path)
     assert (result.returncode, result.stdout, result.stderr) == (0, "loaded\n", "")
+
+
+def test_nothing_is_needed_of_one_distribution_alone() -> None:
+    listed = subprocess.run(
+        ["nm", "-DC", "--undefined-only", PREFIX / "lib/librmw_manycore.so"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    needed = set(re.findall(r" U .*?eprosima::fastcdr::(.*)", listed.stdout))
+    assert needed - FAST_CDR == set()
 
 
 def test_the_rmw_of_this_environment_is_the_distributions() -> None:

@@ -71,7 +71,7 @@ size_t Cdr::write(const void * message, uint8_t * data, size_t capacity) const {
   cdr.set_encoding_flag(eprosima::fastcdr::EncodingAlgorithmFlag::PLAIN_CDR);
   cdr.serialize_encapsulation();
   if (empty_) {
-    cdr << uint8_t{0};
+    cdr << char{0};  // unlike that of uint8_t, in the Fast CDR of every distribution
   } else if (!callbacks_->cdr_serialize(message, cdr)) {
     throw manycore::Error(
       manycore::ErrorCode::invalid_argument,
