@@ -32,7 +32,7 @@ def align(
     :param scan: points (M, 3) [m, sensor frame]. Points that are not finite are dropped, here and
         in the target.
     :param T_map_guess: (4, 4), transforms points from the sensor frame to the map frame; it has
-        to be within a few metres and about 15 degrees of the pose.
+        to be within about 8 m and 45 degrees of the pose.
     :param options: options of map and matcher; by default those of a given map.
     :return: the pose, its score and covariance, and whether it converged.
     :raises ManycoreError: if an argument has another shape or is not numeric, if the guess is not a

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.native.errors import translate_native_errors
+from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import (
     Pose,
     ScanPoints,
@@ -27,9 +28,11 @@ from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE, SAMPLE, expla
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.level import levelled
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.places import places_around
 from rmw_manycore_py.ndt.matching.second_look import (
     CONVINCING_SHARE,
     Convinces,
+    best_of,
     best_of_second_look,
 )
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
@@ -153,7 +156,7 @@ class Matcher:
         """Find the pose near the guess (4, 4) at which points (N, 3) [m, sensor frame] fit best.
 
         If the result does not fit well enough, aligns to the finest level alone, and takes a second
-        look (second_look.py).
+        look (second_look.py), and searches around the guess.
 
         :param T_map_guess: (4, 4) initial guess of T_map_sensor.
         :param T_map_regularization: (4, 4) pose that attracts the result along the vehicle's axis.
@@ -168,6 +171,8 @@ class Matcher:
             found = self._looked_closer(found, asked)
             if self.options.second_look_levels and not self._convinces(found):
                 found = self._looked_again(found, asked, self._convinces)
+                if not self._convinces(found):
+                    found = self._looked_around(found, asked)
         return found if only_pose else self._with_covariance(found, asked)
 
     def align_once(
@@ -251,6 +256,20 @@ class Matcher:
             return self._aligned(replace(asked, guess=start), is_wide=True)
 
         return best_of_second_look(first, asked.guess, aligned_widely, convinces)
+
+    def _looked_around(self, first: Alignment, asked: Question) -> Alignment:
+        """Return the best of `first` and of places that a search finds around the guess."""
+        search_map = self._require_map().search_map
+        if search_map is None:
+            return first
+        roll, pitch, _ = poses.to_rpy(first.T_map_sensor)
+        yaw = poses.to_rpy(asked.guess)[2]
+        centre = poses.from_xyz_rpy(asked.guess[:3, 3], (roll, pitch, yaw))
+        with translate_native_errors(CANNOT_WORK):
+            starts = places_around(self, search_map, asked.scan, centre)
+        return best_of(
+            first, starts, lambda T: self._aligned(replace(asked, guess=T)), lambda _: False
+        )
 
     def _aligned(
         self, asked: Question, *, is_wide: bool = False, is_close: bool = False

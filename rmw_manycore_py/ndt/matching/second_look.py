@@ -7,13 +7,17 @@
       └─────────► result                └─────────► result        the best fit of all ◄┘
 ```
 
+If that does not convince, :meth:`Matcher.align` searches the places around the guess (places.py).
+The roll and pitch of the best result so far are used: the ground determines them, also where the
+place is wrong.
+
 All decisions depend on the results alone and are taken in a fixed order, so the answer is the same
 for any number of workers.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from rmw_manycore_py.ndt.geometry.arrays import Pose
@@ -38,9 +42,16 @@ def best_of_second_look(
     :param guess: (4, 4) T_map_sensor that `first` was aligned from.
     :param align_widely: aligns from a guess, beginning with the wide levels.
     """
+    return best_of(first, _starts(guess), align_widely, convinces)
+
+
+def best_of(
+    first: Alignment, starts: Iterable[Pose], align: Align, convinces: Convinces
+) -> Alignment:
+    """Return the first result from some starts that convinces, else the best fit."""
     best, looks = first, first.looks
-    for start in _starts(guess):
-        found = align_widely(start)
+    for start in starts:
+        found = align(start)
         looks += 1
         if _fit(found) > _fit(best):
             best = found

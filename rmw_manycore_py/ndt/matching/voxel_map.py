@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,6 +23,7 @@ from rmw_manycore_py.ndt.matching.kernel_options import (
 )
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 
+MAX_SEARCH_MAP_BYTES = 64 << 20  # of a map of about 1 km by 1 km
 SAMPLE = 20_000  # number of map points scored for own_likelihood
 
 
@@ -86,6 +88,17 @@ class VoxelMap:
     def finest(self) -> _ndt.VoxelMap:
         """Return the level used for scores."""
         return self.levels[self.scored]
+
+    @cached_property
+    def search_map(self) -> _ndt.SearchMap | None:
+        """Return where something is in this map; None if it is too large for that.
+
+        Built at the first use, for searches around a guess.
+        """
+        with suppress(_ndt.NdtError):  # far too large
+            if _ndt.SearchMap.bytes_for(self.finest) <= MAX_SEARCH_MAP_BYTES:
+                return _ndt.SearchMap(self.finest)
+        return None
 
     @property
     def polishing(self) -> int:

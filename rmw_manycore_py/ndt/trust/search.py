@@ -20,13 +20,11 @@ from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Pose, ScanPoints
 from rmw_manycore_py.ndt.matching.alignment import Alignment
 from rmw_manycore_py.ndt.matching.matcher import Matcher
+from rmw_manycore_py.ndt.matching.places import search_options, worked_on
+from rmw_manycore_py.ndt.matching.sketch import Sketch
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
-from rmw_manycore_py.ndt.trust.sketch import Sketch
 
-YAWS = 360
-KEPT_PERMILLE = 850  # fewest points of a place that is aligned, relative to the best one
 FOLLOWED = 16  # places that are aligned with the whole scan
-SLICE_S = 0.2  # of a search, after which scans may be matched
 AROUND_YAW_RAD = np.radians(45.0)  # of a region without any_yaw
 TILT_RAD = np.radians(15.0)  # of a result, against the gravity that is known
 BETWEEN_M = 60.0  # radius of a region of any yaw that is neither small nor large
@@ -52,22 +50,8 @@ class Region:
 
     def options(self) -> _ndt.SearchOptions:
         """Return what is searched."""
-        x, y = self.centre[:2, 3]
-        first_yaw, searched_yaws = 0, YAWS
-        if not self.any_yaw:
-            per_rad = YAWS / (2 * np.pi)
-            yaw_rad = poses.to_rpy(self.centre)[2]
-            first_yaw = int(np.ceil((yaw_rad - AROUND_YAW_RAD) * per_rad))
-            last_yaw = int(np.floor((yaw_rad + AROUND_YAW_RAD) * per_rad))
-            searched_yaws = last_yaw - first_yaw + 1
-        return _ndt.SearchOptions(
-            yaws=YAWS,
-            kept_permille=KEPT_PERMILLE,
-            centre_m=(float(x), float(y)),
-            radius_m=self.radius_m,
-            first_yaw=first_yaw % YAWS,
-            searched_yaws=searched_yaws,
-        )
+        around_rad = np.pi if self.any_yaw else AROUND_YAW_RAD
+        return search_options(self.centre, self.radius_m, around_rad)
 
 
 @dataclass(frozen=True)
@@ -155,11 +139,7 @@ def _promising(
         points = len(sketch.points)
         make_room(map_bytes + _ndt.PlaceSearch.bytes_for(search_map, points, options))
         places = _ndt.PlaceSearch(search_map, sketch.points, options)
-    for descends in (False, True):
-        while not matcher.work_on(places, descends=descends, for_s=SLICE_S):
-            yield True
-        if not descends:
-            places.order_roots()
+    yield from worked_on(matcher, places)
     return [sketch.pose(*place[:4]) for place in places.found(FOLLOWED)]
 
 
