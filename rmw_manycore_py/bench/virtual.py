@@ -31,11 +31,13 @@ class VirtualRun:
     """A run in virtual time.
 
     :ivar log: what nodes printed, and their messages with the virtual time of each.
+    :ivar trace: its events.
     :ivar wall_s: from the start of the command to its end.
     """
 
     condition: str
     log: tuple[str, ...]
+    trace: Trace
     wall_s: float
 
     @property
@@ -56,14 +58,15 @@ def runs_of(
     for number in range(count):
         condition = CONDITIONS[number % len(CONDITIONS)]
         with TemporaryDirectory() as directory, _under(condition, timeout_s):
-            trace = Path(directory) / "trace.csv"
+            path = Path(directory) / "trace.csv"
             words = ("run", str(mapfile), "--virtual", *options, "--json")
-            length = ("--duration", f"{duration_s:g}", "--trace", str(trace))
+            length = ("--duration", f"{duration_s:g}", "--trace", str(path))
             begin_s = time.monotonic()
             output = _output_of(own_program("rmw_manycore_py.cli", *words, *length), timeout_s)
             wall_s = time.monotonic() - begin_s
-            log = (*_printed(output), *_messages(load(trace)))
-            yield VirtualRun(condition, log, wall_s)
+            trace = load(path)
+            log = (*_printed(output), *_messages(trace))
+            yield VirtualRun(condition, log, trace, wall_s)
 
 
 @contextmanager

@@ -28,12 +28,14 @@ def predict(
     duration_s: float = 60.0,
     chains: Sequence[Chain] | None = None,
     is_traced: bool = False,
+    timers_together: bool = False,
 ) -> Prediction:
     """Simulate a run of a profile's application.
 
     :param sites: places of its nodes; `sites_of(placement)` returns those of a mapfile.
     :param chains: topics of the chains to evaluate; default: all causal chains.
     :param is_traced: whether the prediction has a trace; that of many nodes is large.
+    :param timers_together: all timers start at the begin, not each at a time of its own.
     :raises ManycoreError: if the sites lack a node of the profile, nothing in it ran, or SimPy is
         not installed.
     """
@@ -46,6 +48,6 @@ def predict(
     application = application_of(attributed(profile))
     if not application.executors:
         raise ManycoreError("the profile has no callback that ran", EXIT_BAD_INPUT)
-    simulation = Simulation(application, sites, target, seed, is_traced)
+    simulation = Simulation(application, sites, target, seed, is_traced, timers_together)
     simulation.run(duration_s)
     return outcome_of(simulation, duration_s, chains, is_traced)

@@ -61,7 +61,13 @@ class Simulation:
     """An application at its places on a target."""
 
     def __init__(
-        self, application: Application, sites: Sites, target: Target, seed: int, is_traced: bool
+        self,
+        application: Application,
+        sites: Sites,
+        target: Target,
+        seed: int,
+        is_traced: bool,
+        timers_together: bool = False,
     ) -> None:
         self.env = Environment()
         self.application = application
@@ -70,6 +76,7 @@ class Simulation:
         self.target = target
         self._seed = seed
         self._is_traced = is_traced
+        self._timers_together = timers_together
         self._points = np.array(self.profile.quantile_shares)
         self._cpus: dict[object, Cpu] = {}
         self.network = Network(target)
@@ -348,7 +355,8 @@ class Simulation:
         elif callback.kind == "timer" and (period_ns := period_of(callback)):
             timer = Timer(self.env, period_ns, executor, work)
             self.timers[index] = timer
-            self._start(timer, self.random(7, index).random())
+            phase = 1.0 if self._timers_together else self.random(7, index).random()
+            self._start(timer, phase)
         else:
             source = Source(self.env, self._intervals(callback, 8, index), request(executor, work))
             self._start(source, self._phase_ns(callback, 9, index))

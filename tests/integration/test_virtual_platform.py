@@ -64,6 +64,18 @@ def test_a_chain_takes_the_simulated_time(case: str, tmp_path: Path, start) -> N
     assert found_us == pytest.approx([expected_us] * 19, rel=0.001)
 
 
+def test_the_bench_compares_chains_with_the_simulator(tmp_path: Path, manycore) -> None:
+    mapfile, profile, platform = (tmp_path / name for name in ("map.yaml", "p.json", "target.yaml"))
+    platform.write_text("base: coolidge\nparameters: {speed: {value: 1, source: chosen}}\n")
+    mapfile.write_text(MAPFILE.format(node=f"{sys.executable}, {timed.__file__}", cluster=2))
+    save(pipeline(), profile)
+    model = ("--profile", profile, "--platform", platform, "--chains")
+    text = manycore("bench", "virtual", mapfile, *model, "--runs", "2", "--duration", "2", "--json")
+    (chain,) = json.loads(text)["chains"]
+    assert chain["name"] == "/image (/filter) > /small (/sink)"
+    assert chain["virtual_us"] == pytest.approx(chain["simulated_us"], rel=0.001)
+
+
 def test_time_stands_and_goes_on_when_asked(tmp_path: Path, start, manycore) -> None:
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text(MAPFILE.format(node=f"{sys.executable}, {timed.__file__}", cluster=1))

@@ -4,20 +4,34 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
+from dataclasses import asdict
 from itertools import zip_longest
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import click
 
 from rmw_manycore_py.bench.machine import machine_header
 from rmw_manycore_py.bench.virtual import VirtualRun, runs_of
+from rmw_manycore_py.bench.virtual_chains import ComparedChain, compared_chains
 from rmw_manycore_py.cli.bench.driven import driven
 from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples, json_option, number_option
-from rmw_manycore_py.cli.common.printing import echo, print_json
+from rmw_manycore_py.cli.common.printing import (
+    echo,
+    escaped,
+    new_table,
+    print_json,
+    print_table,
+)
 from rmw_manycore_py.cli.common.seconds import Seconds
 from rmw_manycore_py.errors import EXIT_FAILURE
+from rmw_manycore_py.profile.files import load, save
+from rmw_manycore_py.profile.medians import with_medians
+
+MAX_DEVIATION = 0.02
 
 
 @click.command(
@@ -25,6 +39,7 @@ from rmw_manycore_py.errors import EXIT_FAILURE
     epilog=examples(
         "manycore bench virtual autoware_reference --runs 100 --duration 10",
         "manycore bench virtual map.yaml --profile app.profile.json --platform coolidge",
+        "manycore bench virtual map.yaml --profile app.profile.json --chains --runs 2",
     ),
 )
 @mapfile_argument()
@@ -38,6 +53,13 @@ from rmw_manycore_py.errors import EXIT_FAILURE
 )
 @click.option("--platform", "platform_name", default="host", metavar="NAME", help="As of run.")
 @number_option("--seed", within=(0, None), default=0, help="As of manycore run.")
+@click.option(
+    "--chains",
+    "with_chains",
+    is_flag=True,
+    help="With --profile: callbacks take its medians, and chains are compared with manycore "
+    "simulate.",
+)
 @click.option("--kill", "kills", multiple=True, metavar="NODE@S", help="As of manycore run.")
 @json_option
 def command(
@@ -48,6 +70,7 @@ def command(
     profile: Path | None,
     platform_name: str,
     seed: int,
+    with_chains: bool,
     kills: tuple[str, ...],
     as_json: bool,
 ) -> None:
@@ -55,15 +78,19 @@ def command(
 
     In turn alone, beside three busy loops, and on one CPU. Compares what the nodes print, and each
     message with the virtual time at which it is published and taken. The exit status is 1 if a run
-    differs from the first one. The installed mapfiles ros_lite and whill get their vehicle as a
-    node.
+    differs from the first one, or with --chains the median of a chain by more than 2 % from the
+    simulator's. The installed mapfiles ros_lite and whill get their vehicle as a node.
     """
-    options: list[str] = ["--instant"]
-    if profile is not None:
-        options = ["--profile", str(profile), "--platform", platform_name, "--seed", str(seed)]
-    options += [word for kill in kills for word in ("--kill", kill)]
+    if with_chains and profile is None:
+        raise click.UsageError("--chains needs --profile.")
     found = []
-    with driven(mapfile) as complete:
+    chains: list[ComparedChain] = []
+    with driven(mapfile) as complete, TemporaryDirectory() as directory:
+        options: list[str] = ["--instant"]
+        if profile is not None:
+            taken = _of_medians(profile, Path(directory)) if with_chains else profile
+            options = ["--profile", str(taken), "--platform", platform_name, "--seed", str(seed)]
+        options += [word for kill in kills for word in ("--kill", kill)]
         for one in runs_of(complete, options, runs, duration_s, timeout):
             found.append(one)
             if not as_json:
@@ -71,16 +98,39 @@ def command(
                     f"run {len(found):3}, {one.condition:17}: {one.digest[:16]}, "
                     f"{len(one.log)} events, {one.wall_s:.1f} s"
                 )
-    same = sum(one.digest == found[0].digest for one in found)
+        if with_chains:
+            model = load(taken), platform_name, seed
+            chains = [*compared_chains(found[0].trace, complete, *model, duration_s)]
     if as_json:
-        print_json({"machine": machine_header(), "runs": [_row(one) for one in found]})
+        rows = {"runs": [*map(_row, found)], "chains": [*map(asdict, chains)]}
+        print_json({"machine": machine_header(), **rows})
     else:
-        echo(f"{same} of {runs} runs are the same")
-        for one in found:
-            if one.digest != found[0].digest:
-                echo(_first_difference(found[0], one))
-                break
-    sys.exit(0 if same == runs else EXIT_FAILURE)
+        _print(found, chains)
+    same = all(one.digest == found[0].digest for one in found)
+    near = all(one.deviation <= MAX_DEVIATION for one in chains)
+    sys.exit(0 if same and near else EXIT_FAILURE)
+
+
+def _of_medians(profile: Path, directory: Path) -> Path:
+    path = directory / "medians.profile.json"
+    save(with_medians(load(profile)), path)
+    return path
+
+
+def _print(found: Sequence[VirtualRun], chains: Sequence[ComparedChain]) -> None:
+    same = sum(one.digest == found[0].digest for one in found)
+    echo(f"{same} of {len(found)} runs are the same")
+    for one in found:
+        if one.digest != found[0].digest:
+            echo(_first_difference(found[0], one))
+            break
+    if not chains:
+        return
+    table = new_table("#virtual us", "#simulated us", "#deviation", "chain")
+    for chain in chains:
+        times = (f"{time_us:.1f}" for time_us in (chain.virtual_us, chain.simulated_us))
+        table.add_row(*times, f"{chain.deviation:.2%}", escaped(chain.name))
+    print_table(table)
 
 
 def _row(one: VirtualRun) -> dict[str, object]:
