@@ -7,6 +7,7 @@ import json
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import cycle
 from pathlib import Path
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, MapfileError, shorten
@@ -37,6 +38,7 @@ class _Entry:
     missing: str = ""  # why it cannot run on this machine
     is_mapped: bool = True  # else only a comment
     cluster: int = 1
+    core: int | None = None
 
 
 def init(
@@ -49,9 +51,9 @@ def init(
 ) -> str:
     """Return a mapfile with the nodes found in Python files, directories and one launch file.
 
-    Its clusters are a proposal: nodes that exchange messages share one. `directory` is that of the
-    future mapfile, `arguments` are those of the launch file. A plan has all nodes, also those that
-    cannot run here.
+    Its clusters are a proposal: nodes that exchange messages share one. They share cores where the
+    platform has too few. `directory` is that of the future mapfile, `arguments` are those of the
+    launch file. A plan has all nodes, also those that cannot run here, each on its own core.
     """
     directory = (directory or Path.cwd()).resolve()
     launches = [path for path in sources if path.is_file() and _is_launch_file(path)]
@@ -79,7 +81,8 @@ def init(
     if arguments:
         head.append("launch_arguments:")
         head += [f"  {name}: {json.dumps(value)}" for name, value in arguments.items()]
-    _propose_clusters(mapped, profile(platform), all_fit=plan)
+    if _propose_places(mapped, profile(platform), own_cores=plan):
+        head.append("allow_shared_cores: true  # there are more nodes than cores")
     if plan:
         head += [f"# {shorten(notice)}" for notice in unread]
     lines = (line for entry in entries for line in _lines(entry))
@@ -87,21 +90,25 @@ def init(
     return text.replace(f"{directory}{os.sep}", "")  # in comments on missing things
 
 
-def _propose_clusters(entries: Sequence[_Entry], topology: Topology, *, all_fit: bool) -> None:
-    """Choose clusters by the topics that sources reveal; nodes without room stay in cluster 1."""
-    room = {cluster.id: len(cluster.free) for cluster in topology.clusters}
-    cores = sum(room.values())
-    if all_fit and len(entries) > cores:
+def _propose_places(entries: Sequence[_Entry], topology: Topology, *, own_cores: bool) -> bool:
+    """Choose clusters by the topics that sources reveal; return whether nodes share cores."""
+    cores = sum(len(cluster.free) for cluster in topology.clusters)
+    per_core = -(-len(entries) // cores)
+    if own_cores and per_core > 1:
         text = f"{len(entries)} nodes are more than the {cores} cores of '{topology.profile}'"
         raise ManycoreError(f"{text}: choose another --profile", EXIT_BAD_INPUT)
-    names = [entry.name for entry in entries]
     talk = talk_of(
         ((entry.name, topic.lstrip("/"), 1.0) for entry in entries for topic in entry.publish),
         ((entry.name, topic.lstrip("/")) for entry in entries for topic in entry.subscribe),
     )
-    clusters = by_communication(names, talk, room)
+    room = {cluster.id: len(cluster.free) * per_core for cluster in topology.clusters}
+    clusters = by_communication([entry.name for entry in entries], talk, room)
+    free = {cluster.id: cycle(cluster.free) for cluster in topology.clusters}
     for entry in entries:
-        entry.cluster = clusters.get(entry.name, entry.cluster)
+        entry.cluster = clusters[entry.name]
+        if per_core > 1:
+            entry.core = next(free[entry.cluster])
+    return per_core > 1
 
 
 def _is_launch_file(path: Path) -> bool:
@@ -273,6 +280,8 @@ def _lines(entry: _Entry) -> Iterator[str]:
     yield f"  {entry.name}:"
     yield from (f"    # {remark}" for remark in entry.remarks)
     yield f"    cluster: {entry.cluster}  # choose"
+    if entry.core is not None:
+        yield f"    core: {entry.core}"
     if entry.start:
         yield f"    {entry.start}"
     for key, topics in (("publish", entry.publish), ("subscribe", entry.subscribe)):

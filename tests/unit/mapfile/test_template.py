@@ -1,6 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -58,6 +59,15 @@ def test_what_tools_made_is_no_source(tmp_path: Path) -> None:
     text = init([tmp_path], tmp_path)
     scripts = [line.split()[1] for line in text.splitlines() if "script:" in line]
     assert scripts == ["build/listener.py", "robot/robot/talker.py"]
+
+
+def test_more_nodes_than_cores_share_them(tmp_path: Path) -> None:
+    for number in range(71):
+        write_node(tmp_path / f"node{number}.py", f"node{number}", "publisher", f'"t{number}"')
+    mapfile = tmp_path / "mapfile.yaml"
+    mapfile.write_text(init([tmp_path], tmp_path, "coolidge"))
+    nodes_on = Counter(node.place for node in check(mapfile).nodes)
+    assert (sum(nodes_on.values()), max(nodes_on.values())) == (71, 2)
 
 
 def test_files_of_packages_become_modules(tmp_path: Path) -> None:
