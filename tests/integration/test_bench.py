@@ -276,7 +276,7 @@ def test_scan_matching_is_measured_alone_and_split() -> None:
     assert all("rmw_manycore" in contender for contender in contenders)
     assert {"rmw_manycore 1 worker", "rmw_manycore alone on 1 CPU"} <= contenders
     found = [result for result in report["results"] if result["question"].startswith("found from")]
-    drive, streets = 4 * 5, 3 * 2 * 3  # contenders and distances of each
+    drive, streets = 4 * 6, 3 * 2 * 4  # contenders and distances of each
     assert len(found) == drive + streets
     home = {r["contender"]: r["mean"] for r in found if r["question"].startswith("found from 0.5")}
     assert home["rmw_manycore 4 m, 2 m"] == 100.0
