@@ -42,7 +42,7 @@ uint32_t new_endpoint(
   entry.cluster = registry.processes()[process].cluster;
   entry.topic_hash = hash_name(entry.topic);
   entry.block = SegmentRef{};
-  entry.gid = make_gid(registry, taken, entry.slot.incarnation);
+  entry.gid = spec.gid.value_or(make_gid(registry, taken, entry.slot.incarnation));
   entry.qos = spec.qos;
   entry.type_hash_version = spec.type_hash.version;
   std::copy(spec.type_hash.value.begin(), spec.type_hash.value.end(), entry.type_hash);

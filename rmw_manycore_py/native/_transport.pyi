@@ -224,8 +224,12 @@ class EndpointInfo:
         """As "RIHS01_" and 64 hexadecimal digits (REP 2011)."""
 
     @property
+    def id(self) -> int:
+        """Unique on its platform."""
+
+    @property
     def gid(self) -> bytes:
-        """Unique, 16 bytes."""
+        """16 bytes; a publisher that stands for one of another host has that one's."""
 
     @property
     def node_name(self) -> str: ...
@@ -393,8 +397,8 @@ class Platform:
     def activity(self) -> bytes:
         """Return what changes with every message, endpoint by endpoint: rows of 13 uint64.
 
-        Endpoint (bytes 8 to 15 of its gid), the eight of CounterValues; of subscriptions entries in
-        the queue, entries that it can hold, deadlines missed; `EndpointInfo.held_bytes`.
+        Endpoint (its id), the eight of CounterValues; of subscriptions entries in the queue,
+        entries that it can hold, deadlines missed; `EndpointInfo.held_bytes`.
         """
 
     def deaths(self) -> list[Death]:
@@ -556,10 +560,12 @@ class Process:
         role: EndpointRole = "topic",
         type_hash: str = "",
         node: Node | None = None,
+        gid: bytes | None = None,
     ) -> Publisher:
         """Return a publisher of a topic, or of a service's requests or replies (its role).
 
         :param node: whose it is, for as long as that lives; by default the process's first.
+        :param gid: of the other host's publisher that it stands for.
         """
 
     def subscription(

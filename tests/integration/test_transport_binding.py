@@ -75,6 +75,24 @@ def test_what_a_member_shows_of_itself(configured: str) -> None:
         assert {row.gid for row in member.endpoints()} == gids
 
 
+def test_a_publisher_that_stands_for_one_of_another_host(configured: str) -> None:
+    """It has that one's gid, and its own counters."""
+    gid = bytes(range(16))
+    with Process(configured, label="member") as member, Platform(configured) as seen:
+        publishers = [member.publisher("/t", STRING, Qos(), gid=gid) for _ in range(2)]
+        subscription = member.subscription("/t", STRING, Qos())
+        publishers[0].publish(b"12345678")
+        claim = subscription.claim()
+        assert claim is not None
+        assert claim.publisher == gid
+        claim.release()
+        rows = [row for row in seen.endpoints() if row.kind == "publisher"]
+        assert [(row.gid, row.counters.messages) for row in rows] == [(gid, 1), (gid, 0)]
+        assert rows[0].id != rows[1].id
+        with pytest.raises(ValueError, match="gid: expected the 16 bytes of a gid"):
+            member.publisher("/t", STRING, Qos(), gid=b"short")
+
+
 def _check_publisher(row: EndpointInfo, gid: bytes, qos: Qos) -> None:
     assert (row.role, row.topic, row.type, row.type_hash) == ("topic", "/t", STRING, TYPE_HASH)
     assert (row.node_name, row.node_namespace, row.cluster) == ("member", "/", 2)

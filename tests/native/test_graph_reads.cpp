@@ -292,7 +292,7 @@ TEST_CASE("activity reports the counters of endpoints and the length of their qu
   CHECK(rows[1].queued == 2);
   CHECK(rows[1].capacity == 10);
   EndpointInfo info;
-  info.gid = subscription->gid();
+  info.id = endpoint_in(subscription->gid());
   CHECK(process->graph().activity_of({info}, HeldMemory::skipped).at(0).queued == 2);
   CHECK(process->graph().activity_of({EndpointInfo{}}, HeldMemory::skipped).empty());
 }

@@ -19,6 +19,7 @@
 #include "platform/late_exit.hpp"
 #include "python/context.hpp"
 #include "python/transport/bindings.hpp"
+#include "python/transport/gid.hpp"
 #include "python/transport/publisher.hpp"
 #include "python/transport/rows.hpp"
 #include "python/transport/subscription.hpp"
@@ -115,10 +116,14 @@ public:
   }
   std::unique_ptr<BoundPublisher> publisher(
     const std::string & topic, const std::string & type, const Qos & qos, const std::string & role,
-    const std::string & type_hash, const BoundNode * node) const {
+    const std::string & type_hash, const BoundNode * node,
+    const std::optional<nb::bytes> & gid) const {
     EndpointSpec asked = spec(topic, type, qos, role, type_hash);
     if (node != nullptr) {
       asked.node = node->handle();
+    }
+    if (gid) {
+      asked.gid = gid_from(*gid, "gid");
     }
     return std::make_unique<BoundPublisher>(member(), asked);
   }
@@ -207,7 +212,8 @@ void bind_process(nb::module_ & module) {
       nb::arg("label") = "tool", nb::arg("wait") = word_of(WaitMode::block))
     .def(
       "publisher", &BoundProcess::publisher, nb::arg("topic"), nb::arg("type"), nb::arg("qos"),
-      nb::arg("role") = "topic", nb::arg("type_hash") = "", nb::arg("node") = nb::none())
+      nb::arg("role") = "topic", nb::arg("type_hash") = "", nb::arg("node") = nb::none(),
+      nb::arg("gid") = nb::none())
     .def("node", &BoundProcess::node, nb::arg("name"), nb::arg("namespace"))
     .def("nodes", &BoundProcess::nodes)
     .def(

@@ -22,10 +22,7 @@ namespace {
 Correlation correlation_from(const std::optional<nb::bytes> & client, int64_t number) {
   Correlation correlation;
   if (client) {
-    if (client->size() != correlation.client.size()) {
-      throw nb::value_error("client: expected the 16 bytes of a gid");
-    }
-    std::memcpy(correlation.client.data(), client->data(), client->size());
+    correlation.client = gid_from(*client, "client");
     correlation.number = number;
   }
   return correlation;
@@ -136,7 +133,7 @@ uint64_t BoundPublisher::publish_from(
   uintptr_t address, size_t size, std::optional<int64_t> source_timestamp_ns) {
   Tracer & tracer = held()->process->tracer();
   if (source_timestamp_ns && tracer.is_on()) {
-    const auto slot = static_cast<uint32_t>(endpoint_in(held()->publisher->gid()));
+    const auto slot = held()->publisher->slot();
     const int64_t age_ns = std::max<int64_t>(realtime_ns() - *source_timestamp_ns, 0);
     tracer.note(TraceKind::bridge_in, slot, 0, static_cast<uint64_t>(age_ns));
   }

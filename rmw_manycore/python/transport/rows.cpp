@@ -97,6 +97,7 @@ void bind_endpoint_info(nb::module_ & module) {
     .def_prop_ro("topic", name<EndpointRow>(&EndpointRow::topic))
     .def_prop_ro("type", name<EndpointRow>(&EndpointRow::type))
     .def_prop_ro("type_hash", [](const EndpointRow & row) { return to_text(row.type_hash); })
+    .def_ro("id", &EndpointRow::id)
     .def_prop_ro("gid", [](const EndpointRow & row) { return to_bytes(row.gid); })
     .def_prop_ro("node_name", name<EndpointRow>(&EndpointRow::node_name))
     .def_prop_ro("node_namespace", name<EndpointRow>(&EndpointRow::node_namespace))
@@ -125,7 +126,7 @@ std::vector<EndpointRow> rows_of(
   }
   std::vector<EndpointRow> rows;
   for (size_t i = 0; i < endpoints.size(); ++i) {
-    const auto found = activities.find(endpoint_in(endpoints[i].gid));
+    const auto found = activities.find(endpoints[i].id);
     if (found == activities.end()) {
       continue;
     }

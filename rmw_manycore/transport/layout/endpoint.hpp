@@ -4,17 +4,18 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
 
 #include "transport/layout/qos.hpp"
 
 namespace manycore {
 
-/// Globally unique identifier of an endpoint: platform nonce, endpoint slot, incarnation (see
-/// gid.hpp).
+/// Globally unique identifier of an endpoint: platform nonce, endpoint slot, incarnation. A
+/// publisher that stands for one of another host has that one's.
 using Gid = std::array<uint8_t, 16>;
 
-/// Slot and incarnation of the endpoint, packed as by trace_endpoint().
+/// Slot and incarnation in a gid of this platform, packed as by trace_endpoint().
 inline uint64_t endpoint_in(const Gid & gid) noexcept {
   uint64_t word = 0;
   std::memcpy(&word, gid.data() + 8, sizeof word);
@@ -42,6 +43,7 @@ struct EndpointSpec {
   TypeHash type_hash;
   Qos qos;
   bool ignore_local = false;  ///< subscription only: do not match publishers of the same process
+  std::optional<Gid> gid;     ///< publisher only: that of another host which it stands for
 };
 
 /// Client and request number of a request or reply; all zero on topics.

@@ -68,7 +68,8 @@ uint64_t Publisher::publish(Loan && loan, size_t size_bytes, int64_t source_time
   impl.writer.take_back(ended.lent_->chunk);
   ended.lent_.reset();
   impl.registry.tracer().note(
-    TraceKind::in_place, impl.slot, impl.writer.next_number(), endpoint_in(impl.entry.gid));
+    TraceKind::in_place, impl.slot, impl.writer.next_number(),
+    trace_endpoint(impl.slot, impl.entry.slot.incarnation));
   const uint64_t sequence_number = impl.publish({size_bytes, source_timestamp_ns, {}}, {});
   impl.entry.counters.in_place.fetch_add(1, std::memory_order_relaxed);
   return sequence_number;

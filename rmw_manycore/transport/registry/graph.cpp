@@ -32,9 +32,9 @@ struct Seen {
   }
 };
 
-Activity activity_of(Registry & registry, const EndpointEntry & entry) {
+Activity activity_of(Registry & registry, uint32_t slot, const EndpointEntry & entry) {
   Activity activity;
-  activity.endpoint = endpoint_in(entry.gid);
+  activity.endpoint = trace_endpoint(slot, entry.slot.incarnation);
   activity.counters = values_of(entry.counters);
   const Cluster * const cluster = entry.kind == EndpointKind::subscription
                                     ? registry.clusters().find(entry.block.cluster())
@@ -53,9 +53,9 @@ Activity activity_of(Registry & registry, const EndpointEntry & entry) {
 }
 
 auto look(Registry & registry, HeldMemory held) {
-  return [&registry, held](uint32_t, const EndpointEntry & entry) -> Seen {
+  return [&registry, held](uint32_t slot, const EndpointEntry & entry) -> Seen {
     return {
-      activity_of(registry, entry), entry.kind, entry.topic_hash, entry.process.load(),
+      activity_of(registry, slot, entry), entry.kind, entry.topic_hash, entry.process.load(),
       held == HeldMemory::counted ? held_chunks(registry, entry) : std::vector<HeldChunk>()};
   };
 }
@@ -79,8 +79,9 @@ std::vector<Activity> with_held(const std::vector<Seen> & all) {
   return rows;
 }
 
-EndpointInfo describe(uint32_t, const EndpointEntry & entry) {
+EndpointInfo describe(uint32_t slot, const EndpointEntry & entry) {
   EndpointInfo info;
+  info.id = trace_endpoint(slot, entry.slot.incarnation);
   info.kind = entry.kind;
   info.role = entry.role;
   info.topic = text_of(entry.topic);
@@ -170,9 +171,8 @@ std::vector<Activity> Graph::activity_of(
   for (const EndpointInfo & endpoint : endpoints) {
     const size_t before = all.size();
     append_live(
-      registry_.endpoints(), static_cast<uint32_t>(endpoint_in(endpoint.gid)), all,
-      look(registry_, held));
-    if (all.size() > before && all.back().activity.endpoint != endpoint_in(endpoint.gid)) {
+      registry_.endpoints(), static_cast<uint32_t>(endpoint.id), all, look(registry_, held));
+    if (all.size() > before && all.back().activity.endpoint != endpoint.id) {
       all.pop_back();
     }
   }

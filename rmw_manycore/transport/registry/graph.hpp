@@ -56,6 +56,7 @@ struct ClusterInfo {
 
 /// An endpoint in a snapshot of the graph.
 struct EndpointInfo {
+  uint64_t id = 0;  ///< slot and incarnation, as by trace_endpoint()
   EndpointKind kind = EndpointKind::publisher;
   EndpointRole role = EndpointRole::topic;
   std::string topic;
@@ -72,7 +73,7 @@ struct EndpointInfo {
 
 /// State of an endpoint that changes with each message: counters and queue.
 struct Activity {
-  uint64_t endpoint = 0;  ///< slot and incarnation, as endpoint_in(gid)
+  uint64_t endpoint = 0;  ///< its id
   CounterValues counters;
   uint64_t queued = 0;    ///< subscription: hints in its queue, without the backlog of a resync
   uint64_t capacity = 0;  ///< subscription: queue capacity in hints

@@ -24,9 +24,10 @@ Claim::~Claim() {
   }
   // Read before release(): the topic DSM may be freed after it
   const uint32_t publisher = source_.slot();
+  const uint64_t traced = trace_endpoint(publisher, source_.incarnation());
   const bool finished = source_.release(number_);
   subscription_.impl_->registry.tracer().note(
-    TraceKind::release, subscription_.impl_->slot, number_, endpoint_in(info_.publisher));
+    TraceKind::release, subscription_.impl_->slot, number_, traced);
   subscription_.impl_->settle_after_last();
   lock_.unlock();
   if (finished) {
@@ -50,7 +51,7 @@ void Claim::count_in_place() noexcept {
   const Subscription::Impl & impl = *subscription_.impl_;
   impl.entry.counters.in_place.fetch_add(1, std::memory_order_relaxed);
   impl.registry.tracer().note(
-    TraceKind::in_place, impl.slot, number_, endpoint_in(info_.publisher));
+    TraceKind::in_place, impl.slot, number_, trace_endpoint(source_.slot(), source_.incarnation()));
 }
 
 void Claim::reject() noexcept {

@@ -141,7 +141,7 @@ std::optional<Claim> Subscription::claim() {
     claim.info_.publisher = source.publisher();
     claim.info_.correlation = view.record->correlation;
     claim.info_.from_this_process = source.publisher_process() == impl.entry.process;
-    impl.trace_claim(claim.info_, view.number);
+    impl.trace_claim(claim.info_, view.number, traced);
     return claim;
   }
   return std::nullopt;
@@ -188,9 +188,10 @@ LivelinessCount Subscription::liveliness() const {
   return liveliness_of(impl_->registry, impl_->matches, impl_->entry.qos.liveliness_lease_ns);
 }
 
-void Subscription::Impl::trace_claim(const RecordInfo & info, uint64_t number) noexcept {
+void Subscription::Impl::trace_claim(
+  const RecordInfo & info, uint64_t number, uint64_t publisher) noexcept {
   Tracer & tracer = registry.tracer();
-  tracer.note(TraceKind::claim, slot, number, endpoint_in(info.publisher));
+  tracer.note(TraceKind::claim, slot, number, publisher);
   if (entry.role != EndpointRole::topic) {
     const bool asked = entry.role == EndpointRole::request;
     tracer.note(

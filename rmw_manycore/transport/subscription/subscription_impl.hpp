@@ -23,7 +23,7 @@ struct Subscription::Impl {
     finder(registry_, cluster, header, entry, counts),
     matches(registry_, entry) {}
 
-  void trace_claim(const RecordInfo & info, uint64_t number) noexcept;
+  void trace_claim(const RecordInfo & info, uint64_t number, uint64_t publisher) noexcept;
   /// Called after each message. An executor takes only what is there, so it may never find out by a
   /// take that nothing is left.
   void settle_after_last() noexcept;

@@ -142,9 +142,8 @@ def _member(process: _transport.ProcessInfo, nodes: Sequence[str]) -> Member:
 
 
 def _endpoint(endpoint: _transport.EndpointInfo, known: Mapping[int, Endpoint]) -> Endpoint:
-    own_id = int.from_bytes(endpoint.gid[8:16], "little")
-    return known.get(own_id) or Endpoint(
-        own_id,
+    return known.get(endpoint.id) or Endpoint(
+        endpoint.id,
         endpoint.kind,
         endpoint.role,
         endpoint.topic,
