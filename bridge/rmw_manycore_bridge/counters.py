@@ -21,7 +21,7 @@ from typing import Any
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.routes.route import Route
 
-_MAGIC = b"MCBRIDG3"
+_MAGIC = b"MCBRIDG4"
 _HEADER_BYTES = 24  # magic, process id, bytes of the routes' JSON
 # All fields have 64 bits. `latency_ns` is the sum over all messages of the time from source
 # timestamp to forwarding. `busy_ns` is CPU time spent on the topic, `load_ppm` its CPU usage in
@@ -57,8 +57,7 @@ _BUSY, _LOAD = _INDEX["busy_ns"], _INDEX["load_ppm"]
 _WINDOW, _WINDOW_BUSY = _INDEX["window_ns"], _INDEX["window_busy_ns"]
 _WINDOW_NS = 1_000_000_000
 _MAX_LATENCY_NS = 3600 * 1_000_000_000
-_GIDS = 64  # messages of earlier publishers may still be in flight
-MAX_PUBLISHERS = _GIDS // 2  # of a route at the same time
+_GIDS = 4  # messages of earlier publishers may still be in flight
 _GID_BYTES = 16
 # Publishers forwarded last, each with the sequence number of its last message.
 _SOURCES = 16
@@ -101,7 +100,6 @@ class Row:
         self._words = memory[: 8 * _WORDS].cast("Q")
         self._gid_count = memory[8 * _WORDS : 8 * _WORDS + 8].cast("Q")
         self._offsets: dict[bytes, int] = {}  # in the memory, by publisher gid
-        self._gids: dict[int, bytes] = {}  # of publishers that are not closed, by slot
         self.last_passed: LastNumbers = {}  # by this process or a previous one
 
     def passed(self, size: int, latency_ns: int) -> None:
@@ -152,16 +150,9 @@ class Row:
 
     def add_gid(self, gid: bytes) -> None:
         """Register a publisher of this bridge before it publishes."""
-        count = self._gid_count[0]
-        slot = next(i % _GIDS for i in range(count, count + _GIDS) if i % _GIDS not in self._gids)
-        start = 8 * _WORDS + 8 + slot * _GID_BYTES
+        start = 8 * _WORDS + 8 + self._gid_count[0] % _GIDS * _GID_BYTES
         self._memory[start : start + _GID_BYTES] = gid
-        self._gids[slot] = gid
-        self._gid_count[0] = slot + 1
-
-    def close_gid(self, gid: bytes) -> None:
-        """Remember a closed publisher only until its slot is needed."""
-        self._gids = {slot: other for slot, other in self._gids.items() if other != gid}
+        self._gid_count[0] += 1
 
     def has_gid(self, gid: bytes) -> bool:
         """Return whether a publisher belongs to this bridge."""

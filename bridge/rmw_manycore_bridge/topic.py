@@ -133,7 +133,7 @@ class Topic(Mover):
     def arrived(self, publisher: bytes, number: int, address: int, size: int, sent_ns: int) -> None:
         """Handle an arrived message, unless another lane forwards it."""
         role, row = self._role, self._sides.row
-        if self._sides.route.mirrored and self._sides.own.has(publisher):
+        if self._sides.route.mirrored and self.is_own(publisher):
             row.add("own")
         elif role.name == "heir":
             data = ctypes.string_at(address, size)
@@ -141,6 +141,10 @@ class Topic(Mover):
         elif not role.repeats(publisher, number) and not self._drops_repeated(publisher, number):
             self._note(publisher, number)
             self._pass_on(address, size, sent_ns, publisher, number)
+
+    def is_own(self, publisher: bytes) -> bool:
+        """Return whether a message with that gid was published by this bridge."""
+        return self._sides.own.has(publisher)
 
     def _drops_repeated(self, publisher: bytes, number: int) -> bool:
         """Count a message forwarded before, e.g. by a killed process; return whether to drop it.

@@ -7,7 +7,6 @@ import time
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from rmw_manycore_bridge.counters import MAX_PUBLISHERS
 from rmw_manycore_bridge.limits import Gaps
 from rmw_manycore_bridge.outside import types
 from rmw_manycore_bridge.outside.interface import Endpoint, Subscription
@@ -68,10 +67,10 @@ class InwardTopic(Topic):
     def _appear(self, publishers: Sequence[Endpoint]) -> bool:
         """Publish on the platform, on nodes of the same names where publishers have them."""
         assert self._offer is not None
-        named = {one.gid: one for one in publishers[:MAX_PUBLISHERS] if one.node}
+        named = {one.gid: one for one in publishers if one.node}
         wanted = named or {b"": Endpoint(self._sides.route.type, self._offer)}
         for gid in self._publishers.keys() - wanted.keys():
-            self._end(gid)
+            del self._publishers[gid]
         try:
             for gid in wanted.keys() - self._publishers.keys():
                 self._publishers[gid] = self._made(wanted[gid])
@@ -86,13 +85,14 @@ class InwardTopic(Topic):
         node = inside.stand_in(publisher.node) if publisher.node else None
         type_hash = types.hash_of(route.type)
         entity = inside.process.publisher(
-            route.inside, route.type, publisher.qos, type_hash=type_hash, node=node
+            *(route.inside, route.type, publisher.qos),
+            type_hash=type_hash,
+            node=node,
+            gid=publisher.source or None,
         )
-        self._sides.row.add_gid(entity.gid)
+        if node is None:  # others have gids of other platforms
+            self._sides.row.add_gid(entity.gid)
         return _Publisher(entity, node)
-
-    def _end(self, gid: bytes) -> None:
-        self._sides.row.close_gid(self._publishers.pop(gid).entity.gid)
 
     def _listen(self, depth: int) -> None:
         if self._subscription is not None:
@@ -159,5 +159,4 @@ class InwardTopic(Topic):
         """Leave both sides."""
         self.stop_listening()
         self._offer = None
-        for gid in list(self._publishers):
-            self._end(gid)
+        self._publishers.clear()

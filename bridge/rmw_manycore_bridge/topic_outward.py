@@ -14,6 +14,8 @@ from rmw_manycore_bridge.topic_role import STEP_S, TopicRole
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native._transport import Qos
 
+_PLATFORM_BYTES = 8  # of a gid, which are the same for all endpoints of a platform
+
 
 class OutwardTopic(Topic):
     """Runs in the thread of the platform side."""
@@ -120,6 +122,12 @@ class OutwardTopic(Topic):
             self._sides.inside.wake()  # continue after the other routes
         self._count_lost(subscription)
 
+    def is_own(self, publisher: bytes) -> bool:
+        """Return whether this bridge published it; a link publishes all from other platforms."""
+        if self._sides.outside.links_platforms and self._subscription is not None:
+            return publisher[:_PLATFORM_BYTES] != self._subscription.gid[:_PLATFORM_BYTES]
+        return super().is_own(publisher)
+
     def send(self, address: int, size: int, sent_ns: int, publisher: bytes, number: int) -> None:
         """Publish outside."""
         assert self._publisher is not None
@@ -155,6 +163,5 @@ class OutwardTopic(Topic):
         """Leave both sides."""
         self.stop_listening()
         if self._publisher is not None:
-            self._sides.row.close_gid(self._publisher.gid)
             self._publisher.close()
         self._publisher = self._offer = None

@@ -13,7 +13,15 @@ import pytest
 from support import IS_MANYCORE, wait_until
 from support.nodes.parted import HEARD, HOSTS, Parted
 from support.nodes.serving import call, count, send_goal, serve
-from support.nodes.speakers import flood, hear, hear_gids, say, say_as, say_stamped
+from support.nodes.speakers import (
+    flood,
+    hear,
+    hear_gids,
+    say,
+    say_as,
+    say_as_many,
+    say_stamped,
+)
 from support.nodes.zenoh_peers import free_port, locator
 from support.processes.background import background_runs
 from support.processes.commands import manycore_command
@@ -149,7 +157,7 @@ def test_a_host_that_does_not_read_costs_only_its_own_messages(platforms, start,
 
 
 def test_nodes_and_publishers_of_other_hosts(hosts) -> None:
-    """They have their names and QoS there, and messages the gid of their publisher."""
+    """They have their names, QoS and gids there, and messages the gid of their publisher."""
     hosts.run_all()
     for name, words in (("one", {}), ("two", LATCHED)):
         hosts.node("a", say_as, name, "/told", words).wait_for("^said$")
@@ -159,10 +167,42 @@ def test_nodes_and_publishers_of_other_hosts(hosts) -> None:
         return [line.strip() for line in hosts.command("b", *words).splitlines()]
 
     assert lines("node", "list") == ["/listener", "/one", "/talker", "/two"]
+    assert hosts.gids("b", "/told") == hosts.gids("a", "/told")
     told = lines("topic", "info", "-v", "/told")
     assert {"Node name: one", "Node name: two"} <= {*told}
     assert told.count("Durability: TRANSIENT_LOCAL") == 1
     assert lines("node", "info", "/talker")[0] == "/talker"
+
+
+def test_many_publishers_of_a_topic(hosts) -> None:
+    hosts.run_all()
+    hosts.node("a", say_as_many, 100, "/told").wait_for("^said$")
+    hosts.node("b", hear_gids, "/told", 100).wait_for("^heard voice0 and .* from their gids$")
+    assert hosts.gids("b", "/told") == hosts.gids("a", "/told")
+
+
+def test_a_topic_published_on_both_hosts(hosts) -> None:
+    """A host passes on its own messages only."""
+    hosts.run_all()
+    for host, name in zip(HOSTS, ("one", "two"), strict=True):
+        hosts.node(host, say_as, name, "/told", {}).wait_for("^said$")
+        hosts.node(host, hear, "/told", {}).wait_for("^listening$")
+    for host in HOSTS:
+        hosts.node(host, hear_gids, "/told", 2).wait_for("^heard one and two from their gids$")
+    for host in HOSTS:
+        wait_until(lambda host=host: hosts.row(host, "outward", "/told")["own"], "not passed on")
+
+
+def test_a_killed_link_process(hosts) -> None:
+    """The runner starts it again; publishers keep their gids."""
+    runs = hosts.run_all()
+    before = hosts.gids("b", "/chatter")
+    os.kill(hosts.row("a", "outward", "/chatter")["pid"], signal.SIGKILL)
+    runs["a"].wait_for("connected to another host")
+    runs["b"].skip_output()
+    runs["b"].wait_for(HEARD)
+    wait_until(lambda: hosts.gids("b", "/chatter") == before, "the publisher is there again")
+    assert hosts.row("b", "inward", "/chatter")["repeated"] == 0
 
 
 def test_a_clock_that_differs(hosts) -> None:

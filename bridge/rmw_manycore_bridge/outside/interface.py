@@ -19,14 +19,15 @@ from rmw_manycore_py.routes.route import Direction, Route
 class Endpoint:
     """Publisher or subscription of another node; `type` names what does not fit, if it differs.
 
-    Between hosts, the platform shows it: `node` is the full name of its node, and `gid` what its
-    messages have.
+    Between hosts, the platform shows it: `node` is the full name of its node, `gid` what its
+    messages have on the link, and `source` its gid on its platform.
     """
 
     type: str
     qos: Qos
     node: str = ""
     gid: bytes = b""
+    source: bytes = b""
 
 
 @dataclass(frozen=True)
@@ -170,7 +171,10 @@ class Outside(Loop):
     """Thread of one domain outside.
 
     :ivar readers: called in this thread when their subscription, server or client has something.
+    :cvar links_platforms: whether it joins parts of one platform, whose publishers keep their gids.
     """
+
+    links_platforms = False
 
     def __init__(self, name: str) -> None:
         super().__init__(name)

@@ -100,7 +100,14 @@ class Graph:
         return self._met.pop(session, set())
 
     def token(
-        self, kind: Kind, full_node: str | None, name: str, type_name: str, type_hash: str, qos: str
+        self,
+        kind: Kind,
+        full_node: str | None,
+        name: str,
+        type_name: str,
+        type_hash: str,
+        qos: str,
+        source: bytes = b"",
     ) -> Token:
         """Return the token of a new endpoint, which enters the graph with its node, if it is named.
 
@@ -111,6 +118,7 @@ class Graph:
         return Token(
             *(self._domain, self._zid, self._enter(node).number, next(self._numbers), kind),
             *(namespace or "/", short, name, type_name, type_hash, qos),
+            source=source,
         )
 
     def declare(self, token: Token) -> Declared:

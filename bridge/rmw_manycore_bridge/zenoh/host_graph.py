@@ -67,7 +67,7 @@ class HostPublisher(ZenohPublisher):
     def _token_of(self, source: EndpointInfo) -> Token:
         own, node = self._token, full_node_name(source.node_namespace, source.node_name)
         qos = qos_text.encode(source.qos)
-        return self._graph.token("MP", node, own.name, own.type, own.type_hash, qos)
+        return self._graph.token("MP", node, own.name, own.type, own.type_hash, qos, source.gid)
 
     def _hide(self, gid: bytes) -> None:
         self._sources.pop(gid).declared.withdraw()

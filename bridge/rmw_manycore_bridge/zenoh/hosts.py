@@ -21,6 +21,7 @@ from rmw_manycore_py.routes.route import Route
 class Hosts(Zenoh):
     """The link to one host, or the links from all others."""
 
+    links_platforms = True
     _is_late = False  # whether it waits, or had to wait, for its address
 
     @classmethod
@@ -47,7 +48,10 @@ class Hosts(Zenoh):
     def publishers(self, route: Route, _: bool) -> list[Endpoint]:
         """Return the publishers of a topic on other hosts, with their nodes."""
         found = self._graph.endpoints("MP", route.outside)
-        return [Endpoint(self._type_of(t), self._qos_of(t), t.full_node_name, t.gid) for t in found]
+        return [
+            Endpoint(self._type_of(t), self._qos_of(t), t.full_node_name, t.gid, t.source)
+            for t in found
+        ]
 
     def publish(self, route: Route, qos: Qos) -> HostPublisher:
         """Create a publisher."""

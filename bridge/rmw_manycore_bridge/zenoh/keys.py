@@ -15,6 +15,7 @@ Kind = Literal["NN", "MP", "MS", "SS", "SC"]
 _SLASH = "%"
 _TYPE = re.compile(r"[a-z]\w*::(msg|srv|action)::dds_::[A-Z]\w*_", re.ASCII)
 _NODE_PARTS, _ENDPOINT_PARTS = 9, 13  # newer releases may append more
+_GID = re.compile(r"[0-9a-f]{32}")  # between hosts, the part behind those
 
 
 class TokenError(ValueError):
@@ -57,7 +58,10 @@ def graph_key(domain: int) -> str:
 
 @dataclass(frozen=True)
 class Token:
-    """Node or endpoint as its liveliness token describes it; of a node, `name` is empty."""
+    """Node or endpoint as its liveliness token describes it; of a node, `name` is empty.
+
+    :ivar source: between hosts, gid of the publisher on its platform.
+    """
 
     domain: int
     session: str
@@ -71,6 +75,7 @@ class Token:
     type_hash: str = ""
     qos: str = ""
     enclave: str = "/"
+    source: bytes = b""
 
     @property
     def text(self) -> str:
@@ -80,6 +85,8 @@ class Token:
         parts = [GRAPH, *map(str, identity), *names]
         if self.kind != "NN":
             parts += [mangled(self.name), dds_type(self.type), self.type_hash, self.qos]
+        if self.source:
+            parts.append(self.source.hex())
         return "/".join(parts)
 
     @property
@@ -94,7 +101,7 @@ class Token:
 
 
 def parse_token(text: str) -> Token:
-    """Return a token by its key expression; ignore parts behind those that are known.
+    """Return a token by its key expression; ignore unknown parts behind those that are known.
 
     :raises TokenError: if it has another format.
     """
@@ -117,9 +124,11 @@ def parse_token(text: str) -> Token:
     except ValueError as error:
         raise TokenError("expected numbers of domain, node and entity") from error
     domain, node_id, entity_id = numbers
+    source = next((part for part in parts[_ENDPOINT_PARTS:] if _GID.fullmatch(part)), "")
     return Token(
         *(domain, parts[2], node_id, entity_id, kind, namespace or "/", node),
         *(demangled(name), ros_type(type_name), type_hash, qos, enclave),
+        bytes.fromhex(source),
     )
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rmw_manycore_bridge.status import status
+from rmw_manycore_py.native._transport import Platform
 from support.processes.commands import manycore_command, peer_command
 from support.processes.platforms import unique_platform
 from support.processes.program import Program
@@ -67,6 +68,12 @@ class Parted:
         program = self._start([*map(str, manycore_command(*words))], MANYCORE_PLATFORM=platform)
         assert program.wait() == 0, program
         return program.output
+
+    def gids(self, host: str, topic: str) -> dict[str, bytes]:
+        """Return the gids of publishers of a topic by their nodes, as a host shows them."""
+        with Platform(self.platforms[host]) as seen:
+            rows = [row for row in seen.endpoints() if row.topic == topic]
+        return {row.node_name: row.gid for row in rows if row.kind == "publisher"}
 
     def row(
         self, host: str, direction: str, name: str, kind: str = "topic", peer: str | None = None

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import itertools
 import os
+import struct
 import time
 from typing import Any
 
@@ -39,6 +41,17 @@ def say(topic: str, words: dict[str, Any], period_s: float | None, *texts: str) 
         spin_until(node, lambda: False, 1e6)
 
 
+def count_up(topic: str, words: dict[str, Any], period_s: float) -> None:
+    """Publish the numbers from 0."""
+    with peer_node("counter") as node:
+        message = type_of("std_msgs/msg/String")
+        publisher = node.create_publisher(message, topic, qos(words))
+        numbers = itertools.count()
+        node.create_timer(period_s, lambda: publisher.publish(message(data=str(next(numbers)))))
+        announce("counting")
+        spin_until(node, lambda: False, 1e6)
+
+
 def hear(topic: str, words: dict[str, Any]) -> None:
     """Print each message received, with its source timestamp."""
     with peer_node("hearer") as node:
@@ -70,6 +83,26 @@ def say_as(name: str, topic: str, words: dict[str, Any]) -> None:
         node.create_timer(0.05, lambda: publisher.publish(message))
         announce("said")
         spin_until(node, lambda: False, 1e6)
+
+
+def say_as_many(count: int, topic: str) -> None:
+    """Publish the names of nodes, each on its own, again and again."""
+    from rmw_manycore_py.native import _transport
+
+    with _transport.Process(os.environ["MANYCORE_PLATFORM"], label="voices") as process:
+        voices = []
+        for number in range(count):
+            name = f"voice{number}"
+            node = process.node(name, "/")
+            kind = "std_msgs/msg/String"
+            publisher = process.publisher(topic, kind, _transport.Qos(), node=node)
+            length = struct.pack("<I", len(name) + 1)
+            voices.append((node, publisher, b"\0\1\0\0" + length + name.encode() + b"\0"))
+        announce("said")
+        while True:
+            for _, publisher, message in voices:
+                publisher.publish(message)
+            process.wait(process.epoch(), 0.05)
 
 
 def hear_gids(topic: str, count: int) -> None:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from rmw_manycore_bridge.zenoh.attachment import Attachment, pack, unpack
@@ -58,6 +60,12 @@ def test_the_token_of_a_talker() -> None:
     assert (token.name, token.type) == ("/parameter_events", "rcl_interfaces/msg/ParameterEvent")
     assert token.text == PARAMETER_EVENTS
     assert parse_token(f"{PARAMETER_EVENTS}/backends:cpu") == token
+
+
+def test_a_token_between_hosts_has_the_gid_of_the_publisher() -> None:
+    token = replace(parse_token(PARAMETER_EVENTS), source=bytes(range(16)))
+    assert token.text == f"{PARAMETER_EVENTS}/000102030405060708090a0b0c0d0e0f"
+    assert parse_token(token.text) == token
 
 
 def test_the_token_of_a_node() -> None:
