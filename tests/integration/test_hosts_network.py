@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import subprocess
 from collections.abc import Iterator
@@ -15,7 +16,8 @@ import pytest
 from rmw_manycore_py.bench.hosts import ADDRESSES, Host, can_have_hosts, two_hosts
 from support import IS_MANYCORE, wait_until
 from support.nodes.parted import HEARD, HOSTS, Parted
-from support.nodes.speakers import flood, hear
+from support.nodes.speakers import count_up, flood, hear
+from support.processes.lossy_cable import lossy_hosts
 from support.processes.platforms import leftovers
 
 pytestmark = [
@@ -72,6 +74,23 @@ def test_a_slow_link_costs_counted_messages(start, tmp_path) -> None:
         assert speaker.is_running()
         hearer.skip_output()
         hearer.wait_for("^heard x")
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/net/tun"), reason="needs network devices of a process")
+def test_a_link_with_delay_and_loss(start, tmp_path) -> None:
+    """Reliable messages stay in order, and each that does not arrive is counted."""
+    with lossy_hosts(delay_s=0.02, loss=0.02) as both:
+        hosts = parted(start, tmp_path, both, "tcp")
+        hosts.run_all()
+        kept = {"depth": 1000}
+        hearer = hosts.node("b", hear, "/numbers", kept)
+        hearer.wait_for("^listening$")
+        hosts.node("a", count_up, "/numbers", kept, 0.005)
+        hearer.wait_for("^heard 1000 ")
+        heard = [int(number) for number in re.findall(r"^heard (\d+) ", hearer.output, re.M)]
+        assert heard == sorted({*heard})
+        rows = hosts.row("a", "outward", "/numbers"), hosts.row("b", "inward", "/numbers")
+        assert len(heard) + sum(row["lost"] for row in rows) > heard[-1] - heard[0]
 
 
 def certificates(directory: Path) -> Path:
