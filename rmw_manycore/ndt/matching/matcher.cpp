@@ -31,8 +31,7 @@ MatchOptions options_of(const MatchOptions & options, const MapView & level, boo
 }
 
 /// Adds the steps of one level to those of all.
-void add_steps(const NewtonResult & level, uint32_t & iterations, Path & path) {
-  iterations += level.iterations;
+void add_steps(const NewtonResult & level, Path & path) {
   for (uint32_t step = 1; step < level.path.count; ++step) {
     path.add(level.path.poses[step]);
   }
@@ -65,25 +64,27 @@ NewtonResult descend(
   uint32_t iterations = 0;
   Path path;
   path.add(guess);
-  const auto align_to = [&](size_t level, bool is_last) {
+  const auto align_to = [&](size_t level) {
     problem.map = levels.maps[level];
+    const bool is_last = level == scored || level + 1 == levels.maps.size();
     const MatchOptions options = options_of(problem.options, problem.map, is_last);
     const NewtonResult found = maximise(result.pose, options, at);
-    add_steps(found, iterations, path);
+    iterations += found.iterations;
     return found;
   };
   for (size_t i = 0; i <= scored; ++i) {
-    result = align_to(i, i + 1 == levels.maps.size());
+    result = align_to(i);
+    add_steps(result, path);
   }
   const Derivatives first = result.first;
   for (size_t i = scored + 1; i < levels.maps.size() && result.outcome == Outcome::converged; ++i) {
-    const NewtonResult fine = align_to(i, i + 1 == levels.maps.size());
+    const NewtonResult fine = align_to(i);
     problem.map = levels.scored();
     const Derivatives there = at(fine.pose);
     if (!refines(fine, levels.maps[i], result, there)) {
-      result = align_to(scored, true);  // it ended early
       break;
     }
+    add_steps(fine, path);
     result.pose = fine.pose;
     result.at = there;
   }

@@ -267,22 +267,25 @@ class Matcher:
         centre = poses.from_xyz_rpy(asked.guess[:3, 3], (roll, pitch, yaw))
         with translate_native_errors(CANNOT_WORK):
             starts = places_around(self, search_map, asked.scan, centre)
-        return best_of(
-            first, starts, lambda T: self._aligned(replace(asked, guess=T)), lambda _: False
-        )
+
+        def aligned(start: Pose) -> Alignment:
+            return self._aligned(replace(asked, guess=start))
+
+        return best_of(first, starts, aligned, lambda _: False)
 
     def _aligned(
-        self, asked: Question, *, is_wide: bool = False, is_close: bool = False
+        self, asked: Question, *, is_wide: bool = False, is_close: bool = False, polish: bool = True
     ) -> Alignment:
         voxel_map = self._require_map()
+        polishing = voxel_map.polishing if polish else 0
+        levels = voxel_map.levels[: voxel_map.scored + 1 + polishing]
         first = voxel_map.scored if is_close else 0 if is_wide else voxel_map.first
         guess = asked.guess
         level = levelled(asked.scan, guess)
         begin_ns = time.monotonic_ns()
         with translate_native_errors(CANNOT_WORK):
             result = self._native.align(
-                *(voxel_map.levels, level.points, level.guess, asked.position),
-                *(first, voxel_map.polishing),
+                *(levels, level.points, level.guess, asked.position, first, polishing)
             )
         if self.on_aligned is not None:
             self.on_aligned(begin_ns)
@@ -307,7 +310,8 @@ class Matcher:
         around = covariance.poses_around(alignment.T_map_sensor, self.options.offsets_m)
         results: list[Pose] = []
         if kind == "multi_ndt":
-            results = [self._aligned(replace(asked, guess=T)).T_map_sensor for T in around]
+            unpolished = [self._aligned(replace(asked, guess=T), polish=False) for T in around]
+            results = [one.T_map_sensor for one in unpolished]
             found = covariance.from_results(alignment, results)
         else:
             likelihoods = [self.score(asked.scan, T).nearest_voxel_likelihood for T in around]

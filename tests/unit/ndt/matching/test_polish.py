@@ -14,6 +14,7 @@ from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.nodes.scan_matcher.matcher_options import matcher_options
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
+from support.nodes.scan_matching import TRUTH, street_map, street_scan
 from support.samples.ndt_world import errors, pose, scan_at, street
 
 pytestmark = pytest.mark.unit
@@ -51,7 +52,22 @@ def test_where_the_map_is_too_sparse_for_finer_voxels_nothing_changes():
     true = pose(40, 0.5, 1.8, 0.01, -0.02, 0.3)
     scan, guess = scan_at(WORLD, true), pose(40.4, 0.2, 1.9, 0, 0, 0.34)
     found = [matcher(options, sparse).align(scan, guess) for options in (PLAIN, POLISHING)]
-    np.testing.assert_allclose(found[0].T_map_sensor, found[1].T_map_sensor, atol=0.005)
+    np.testing.assert_array_equal(found[0].T_map_sensor, found[1].T_map_sensor)
+
+
+def test_wrong_places_are_not_moved_to_better_ones():
+    """They score as with ordinary voxels alone, and so are judged alike."""
+    world, scan = street_map(), street_scan()
+    plain, polishing = (matcher(replace(one, search="radius"), world) for one in (PLAIN, POLISHING))
+    generator = np.random.default_rng(4)
+    wrong = 0
+    for _ in range(9):
+        guess = poses.perturbed(TRUTH, 6.0, 0.3, generator)
+        before, after = plain.align_once(scan, guess), polishing.align_once(scan, guess)
+        wrong += errors(before.T_map_sensor, TRUTH)[0] > 1.0
+        assert errors(after.T_map_sensor, before.T_map_sensor)[0] < 0.3
+        np.testing.assert_array_equal(after.path[-1], after.T_map_sensor)
+    assert wrong == 2
 
 
 def test_the_identity_of_autowares_covariance_does_not_widen_finer_voxels():
