@@ -3,7 +3,7 @@
 #
 # Compiles and runs the native tests: scripts/native_tests.sh BUILD_DIR [CMAKE_OPTION..]
 # An existing build directory keeps its options, and only the tests are compiled. With COMPILE_ONLY
-# set, none runs.
+# set, none runs. NATIVE_TRIES=2 runs one that fails once more.
 set -eu
 cd "$(dirname "$0")/.."
 build=$1
@@ -33,4 +33,5 @@ case "$*" in
   *) skipped='^$' ;;
 esac
 # One more than CPUs: those that step through processes wait for each step.
-ctest --test-dir "$build" --output-on-failure --no-tests=error -E "$skipped" -j $((jobs + 1))
+ctest --test-dir "$build" --output-on-failure --no-tests=error -E "$skipped" -j $((jobs + 1)) \
+  --repeat "until-pass:${NATIVE_TRIES:-1}"
