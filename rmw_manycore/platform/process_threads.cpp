@@ -82,7 +82,7 @@ bool is_sleep(const Call & call, bool strict) {
   }
 }
 
-/// Whether an open file is one of a file system: a read of it waits for a disk, and for nobody.
+/// Whether an open file is a regular one: a read of it waits for a disk, not for another process.
 bool is_file(const std::string & link) {
   struct stat status {};
   return stat(link.c_str(), &status) == 0 && S_ISREG(status.st_mode);
