@@ -25,10 +25,14 @@ class ExecutorPlan:
 
 @dataclass(frozen=True)
 class ProcessPlan:
-    """A process: its nodes by index."""
+    """A process: its nodes by index.
+
+    :ivar rest_ns: CPU time after each callback; None if unknown.
+    """
 
     label: str
     nodes: tuple[int, ...]
+    rest_ns: float | None
 
 
 @dataclass(frozen=True)
@@ -70,7 +74,9 @@ class _Plan:
             nodes[index if node.process is None else ("process", node.process)].append(index)
         for key, own in nodes.items():
             self._key_of_process[key] = len(self.processes)
-            self.processes.append(ProcessPlan(self._label(own), tuple(own)))
+            process = profile.nodes[own[0]].process
+            rest_ns = None if process is None else profile.processes[process].rest_ns
+            self.processes.append(ProcessPlan(self._label(own), tuple(own), rest_ns))
 
     def _label(self, nodes: list[int]) -> str:
         first = self._profile.nodes[nodes[0]]

@@ -118,7 +118,10 @@ class Executor:
 
 @dataclass(eq=False)
 class ExecutorThread:
-    """A thread of an executor."""
+    """A thread of an executor.
+
+    :ivar rest_ns: CPU time after a callback, until it looks for the next one.
+    """
 
     env: Environment
     executor: Executor
@@ -127,6 +130,7 @@ class ExecutorThread:
     cluster: int
     delivery: Delivery
     network: Network
+    rest_ns: float = 0.0
     _work: Work | None = None
     _taken: Taken | None = None
     _execution: Execution = (0.0, ())
@@ -236,4 +240,7 @@ class ExecutorThread:
         if work.group is not None:
             work.group.is_busy = False
         self.executor.done(work)
-        self._next()
+        if self.rest_ns:
+            self.task.run(self.rest_ns, self._next)
+        else:
+            self._next()

@@ -43,11 +43,14 @@ class LiveThread:
     """What a thread does is real, how long it takes is drawn from the profile.
 
     As ExecutorThread, but whether an execution publishes is known only when it does.
+
+    :ivar rest_ns: CPU time after a callback, until it looks for the next one.
     """
 
     live: LivePlatform
     task: Task
     cluster: int
+    rest_ns: float = 0.0
     _work: Work | None = None
     _taken: Taken | None = None
     _begin_ns: float = 0.0
@@ -136,7 +139,7 @@ class LiveThread:
         if self._taken is not None:
             self._taken.end_ns = self.live.env.now
         self._work = self._taken = self._execution = None
-        then()
+        self._run(self.rest_ns, then)
 
     def _run_until(self, until_ns: float, then: Then) -> None:
         more_ns, self._done_ns = until_ns - self._done_ns, max(until_ns, self._done_ns)

@@ -48,6 +48,8 @@ class Placed:
     label: str
     nodes: tuple[str, ...]
     site: Site
+    has_rest: bool  # the profile says what follows a callback
+    rest_ns: float  # CPU time after each callback
     other: EventLog  # of publications outside of callbacks
     threads: list[tuple[Task, EventLog]] = field(default_factory=list)
 
@@ -169,7 +171,10 @@ class Simulation:
                     "profile of this application (manycore profile record MAPFILE)",
                     EXIT_BAD_INPUT,
                 )
-            found.append(Placed(plan.label, names, site, EventLog.new(self._is_traced)))
+            rest_ns = (plan.rest_ns or 0.0) / self.target.speed
+            has_rest = plan.rest_ns is not None
+            log = EventLog.new(self._is_traced)
+            found.append(Placed(plan.label, names, site, has_rest, rest_ns, log))
         return found
 
     def _process_of_node(self) -> dict[int, Placed]:
@@ -257,10 +262,16 @@ class Simulation:
             self.env,
             cluster,
             Task.of(cpus, Scheduling("fifo", priority) if priority else None),
-            self.target.ns("receive_us") / self.target.speed,
+            *self._receive_ns(),
             self._wake_ns,
             EventLog.new(self._is_traced),
         )
+
+    def _receive_ns(self) -> tuple[float, float]:
+        """Return the CPU time of a receive thread per message, before and after it notifies."""
+        before_ns = self.target.ns("receive_us")
+        after_ns = max((self.profile.receive_ns or 0.0) - before_ns, 0.0)
+        return before_ns / self.target.speed, after_ns / self.target.speed
 
     def _add_topic_from_outside(self, topic: str, indices: list[int]) -> None:
         callback = self.profile.callbacks[indices[0]]
@@ -327,6 +338,7 @@ class Simulation:
                 placed.site.core.cluster,
                 self.delivery,
                 self.network,
+                placed.rest_ns,
             )
             executor.idle.append(thread)
 
@@ -343,7 +355,7 @@ class Simulation:
                 self.target.speed,
                 self._shares_of(callback),
             ),
-            self._dispatch(callback, index),
+            self._dispatch(callback, index, is_in_rest=placed.has_rest),
             {one.publisher: self.publishers[one.publisher] for one in callback.publishes},
             None if group is None else self._groups[group],
             self._joins.get(index),
@@ -370,11 +382,11 @@ class Simulation:
                 found[output.publisher] = min(rate_hz / callback.rate_hz, 1.0)
         return found
 
-    def _dispatch(self, callback: Callback, index: int) -> Blocks:
+    def _dispatch(self, callback: Callback, index: int, *, is_in_rest: bool) -> Blocks:
         found = self._blocks(callback.dispatch_ns, 10, index)
         speed = self.target.speed
         if found is not None:
             values = found
             return Blocks(lambda count: np.array([values.next() for _ in range(count)]) / speed)
-        default_ns = self.target.ns("dispatch_us") / speed
+        default_ns = 0.0 if is_in_rest else self.target.ns("dispatch_us") / speed
         return Blocks(lambda count: np.full(count, default_ns))

@@ -154,12 +154,17 @@ class Publisher:
 
 @dataclass(eq=False)
 class ReceiveThread:
-    """The receive thread of a cluster."""
+    """The receive thread of a cluster.
+
+    :ivar receive_ns: CPU time per eMCOS message until the readers are notified.
+    :ivar rest_ns: and from there until it waits again.
+    """
 
     env: Environment
     cluster: int
     task: Task
     receive_ns: float
+    rest_ns: float
     wake: Callable[[Task], float]
     log: EventLog
     queue: deque[Message] = field(default_factory=deque)
@@ -184,6 +189,9 @@ class ReceiveThread:
         self.log.add(now, Kind.RECEIVE, publisher.endpoint, message.number, self.cluster)
         for subscription in publisher.far.get(self.cluster, ()):
             subscription.push(now, message, self.log)
+        self.task.run(self.rest_ns, self._go_on)
+
+    def _go_on(self) -> None:
         if self.queue:
             self.task.run(self.receive_ns, self._receive)
         else:

@@ -35,6 +35,7 @@ class Process(_Row):
 
     name: str
     threads: Count  # that ran a callback or published
+    rest_ns: NonNegativeFloat | None = None  # CPU time a callback, in none and not before one
 
 
 class Node(_Row):
@@ -168,6 +169,7 @@ class Profile(_Row):
     callbacks: tuple[Callback, ...]
     chains: tuple[Chain, ...]
     coverage: Coverage
+    receive_ns: NonNegativeFloat | None = None  # CPU time of a receive thread per eMCOS message
 
 
 def indices_of(keys: Iterable[_Key]) -> dict[_Key, int]:

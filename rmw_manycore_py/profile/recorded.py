@@ -23,6 +23,7 @@ from rmw_manycore_py.profile.model import (
     Subscription,
     indices_of,
 )
+from rmw_manycore_py.profile.overheads import Rest, receive_ns
 from rmw_manycore_py.profile.turns import Outside, Publication, Turn, turns_of
 from rmw_manycore_py.trace.events import Endpoint, EndpointId, Kind, ThreadId, Trace
 
@@ -53,12 +54,14 @@ class _Recorded:
     def __init__(self, trace: Trace, begin_ns: int, end_ns: int) -> None:
         self._trace = trace
         self._span_ns = end_ns - begin_ns
+        self._receive_ns = receive_ns(trace, begin_ns, end_ns)
         endpoints = trace.endpoints
         self._nodes = indices_of(one.node for one in endpoints.values() if one.node)
         topics = {key: one for key, one in endpoints.items() if one.role == "topic"}
         self._publishers = indices_of(key for key, one in topics.items() if one.is_publisher)
         self._subscriptions = indices_of(key for key, one in topics.items() if not one.is_publisher)
         self._tids: dict[tuple[int, int], list[int]] = defaultdict(list)  # by cluster and pid
+        self._rests: dict[tuple[int, int], Rest] = defaultdict(Rest)
         self._callbacks: dict[_Key, _Seen] = {}
         self._published: dict[EndpointId, list[Publication]] = defaultdict(list)
         self._outside: dict[EndpointId, int] = defaultdict(int)
@@ -75,7 +78,9 @@ class _Recorded:
         tids.append(thread[2])
         index = list(self._tids).index(process)
         outside = Outside()
-        for turn in turns_of(rows, outside):
+        turns = list(turns_of(rows, outside))
+        self._rests[process].add(rows, turns)
+        for turn in turns:
             turn.publications = [one for one in turn.publications if self._is_topic(one)]
             if turn.is_callback:
                 self._add(turn, index, len(tids) - 1)
@@ -126,7 +131,8 @@ class _Recorded:
             duration_ns=self._span_ns,
             quantile_shares=SHARES,
             processes=tuple(
-                Process(name=labels[key], threads=len(tids)) for key, tids in self._tids.items()
+                Process(name=labels[key], threads=len(tids), rest_ns=self._rests[key].mean_ns)
+                for key, tids in self._tids.items()
             ),
             nodes=tuple(
                 Node(name=name, process=self._process_of_node.get(name)) for name in self._nodes
@@ -149,6 +155,7 @@ class _Recorded:
                 unfinished=self._unfinished,
                 publications_outside_callbacks=sum(self._outside.values()),
             ),
+            receive_ns=self._receive_ns,
         )
 
     def _publisher(self, key: EndpointId, endpoint: Endpoint) -> Publisher:

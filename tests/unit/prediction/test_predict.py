@@ -7,7 +7,7 @@ import pytest
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.prediction import TARGETS, Prediction, Target, predict
-from rmw_manycore_py.profile.model import Node, Profile
+from rmw_manycore_py.profile.model import Node, Process, Profile
 from support.samples.profiles import (
     MS,
     NODES,
@@ -68,6 +68,27 @@ def test_a_receive_thread_costs_its_time_between_clusters() -> None:
     assert total_us(prediction)[0] == pytest.approx(20_500, abs=0.1)
     (thread,) = prediction.receive_threads
     assert (thread.cluster, thread.messages_per_s) == (2, pytest.approx(10, abs=0.2))
+
+
+def test_what_follows_a_callback_is_load_and_delays_the_next_one() -> None:
+    """The sink has 100 ms for a message: it keeps up with a rest of 90 ms, not with 110."""
+    loads, lost = [], []
+    for rest_ms in (90, 110):
+        processes = [Process(name=name[1:], threads=1, rest_ns=0.0) for name in NODES[:2]]
+        processes.append(Process(name="sink", threads=1, rest_ns=rest_ms * MS))
+        prediction = run(pipeline(processes=tuple(processes)))
+        loads.append(next(one.cpu_share for one in prediction.cores if one.nodes == ("/sink",)))
+        lost.append(sum(one.lost for one in prediction.queues))
+    assert loads == pytest.approx([0.91, 1.0], abs=0.02)
+    assert lost == [0, pytest.approx(7, abs=3)]
+
+
+def test_a_receive_thread_has_the_cpu_time_of_the_profile() -> None:
+    target = FREE.changed({"receive_us": 500.0}, "chosen")
+    prediction = run(pipeline(receive_ns=3 * MS), target, sites=sites(1, 2, 2))
+    assert total_us(prediction)[0] == pytest.approx(20_500, abs=0.1)
+    (thread,) = prediction.receive_threads
+    assert thread.cpu_share == pytest.approx(0.03, abs=0.001)
 
 
 def test_a_full_queue_loses_the_oldest() -> None:

@@ -124,6 +124,34 @@ def test_work_before_the_first_take_is_a_timer() -> None:
     assert silent.wall_ns.mean == 300 * US
 
 
+def test_cpu_time_in_no_callback_is_the_rest_of_the_process() -> None:
+    rows = []
+    for i in range(10):
+        t = 1000 * i
+        # 20 us of CPU time in the wait, 13 from its end to the message, 100 in the callback. Then
+        # 40 in another wait, and 7 in a turn without a callback.
+        used = 1000 + 180 * i
+        rows += wait(t, t + 500, (used, used + 20))
+        rows += take(t + 510, FILTER_IN, i, CAMERA)
+        rows += wait(t + 613, t + 900, (used + 133, used + 173))
+    rows += wait(10_000, 10_001, (2800, 2800))
+    assert profiled(rows).processes[0].rest_ns == pytest.approx(67 * US, rel=0.001)
+    assert profiled(take(0, FILTER_IN, 1, CAMERA) * 3).processes[0].rest_ns is None
+
+
+def test_receive_threads_have_their_cpu_time_per_message() -> None:
+    rows = []
+    for i in range(11):
+        rows.append(event(100 * i, Kind.RECEIVE, FILTER_OUT, i, 1))
+        rows.append(event(100 * i, Kind.CPU, NO_ENDPOINT, 0, 50 * US * i))
+    thread = Thread(9, "manycore_rt_1", np.array(rows, EVENT), 0)
+    process = Process(1, 9, None, 0, "receive thread", True, True, (thread,), 0)
+    trace = trace_of([])
+    profile = profile_of(Trace("test", (*trace.processes, process), trace.endpoints, 0), 0, 10**9)
+    assert profile.receive_ns == pytest.approx(500 / 11 * US)
+    assert profiled([]).receive_ns is None
+
+
 def test_a_request_triggers_a_service() -> None:
     rows = [*wait(0, 10, (0, 0)), *take(20, SERVER, 1, 9), *wait(50, 60, (5, 5))]
     (callback,) = profiled(rows).callbacks
