@@ -11,7 +11,6 @@ from rmw_manycore_py.profile.model import Callback, Distribution, Profile
 
 _ORDER = {"timer": 0, "subscription": 1, "service": 2, "client": 3, "unknown": 4}
 _REENTRANT = "reentrant"
-_SAME = 0.001  # of a period: timers of the same period, measured
 
 
 @dataclass(frozen=True)
@@ -180,9 +179,7 @@ def _time(callback: Callback) -> Distribution | None:
 
 
 def period_of(callback: Callback) -> float | None:
-    """Return the period of a timer in ns; a measured one is rounded to whole milliseconds."""
+    """Return the period of a timer in ns; the mean interval if the profile lacks it."""
     if callback.period_ns is None:
         return callback.interval_ns.mean if callback.interval_ns else None
-    whole_ms = round(callback.period_ns / 1e6) * 1e6
-    is_near = abs(callback.period_ns - whole_ms) <= _SAME * callback.period_ns
-    return whole_ms if whole_ms and is_near else float(callback.period_ns)
+    return float(callback.period_ns)

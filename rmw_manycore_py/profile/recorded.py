@@ -24,6 +24,7 @@ from rmw_manycore_py.profile.model import (
     indices_of,
 )
 from rmw_manycore_py.profile.overheads import Rest, receive_ns
+from rmw_manycore_py.profile.periods import nominal_ns
 from rmw_manycore_py.profile.turns import Outside, Publication, Turn, turns_of
 from rmw_manycore_py.trace.events import Endpoint, EndpointId, Kind, ThreadId, Trace
 
@@ -178,7 +179,8 @@ class _Recorded:
         cpu_ns = [round(one.cpu_ns) for one in turns if one.cpu_ns is not None]
         period_ns = None
         if seen.kind == "timer" and interval_ns is not None:
-            period_ns = round(interval_ns.quantiles[SHARES.index(0.5)])
+            due_ns = [one.due_ns for one in turns if one.due_ns is not None]
+            period_ns = nominal_ns(due_ns, interval_ns.quantiles[SHARES.index(0.5)])
         return Callback(
             kind=seen.kind,
             node=self._nodes.get(seen.node or self._only_node(seen.process)),

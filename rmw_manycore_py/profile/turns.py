@@ -13,6 +13,8 @@ from dataclasses import dataclass, field
 
 from rmw_manycore_py.trace.events import EndpointId, Kind, Row, endpoint_id
 
+_FOREVER_NS = 1 << 62  # timeouts beyond are none
+
 
 @dataclass(frozen=True)
 class Publication:
@@ -31,6 +33,7 @@ class Turn:
     trigger: EndpointId | None
     begin_ns: int
     timed_out: bool = False
+    due_ns: int | None = None  # end of the timeout that rcl gave to the wait, if that has passed
     dispatch_ns: int | None = None  # since the thread was free
     end_ns: int | None = None
     cpu_ns: float | None = None  # None if unknown
@@ -94,6 +97,7 @@ def turns_of(rows: Iterable[Row], outside: Outside) -> Iterator[Turn]:
     turn: Turn | None = None
     publish_ns: int | None = None
     free_ns: int | None = None
+    due_ns: int | None = None
     for time_ns, number, value, slot, incarnation, kind in rows:
         if kind == Kind.PUBLISH_BEGIN:
             publish_ns = time_ns
@@ -111,6 +115,7 @@ def turns_of(rows: Iterable[Row], outside: Outside) -> Iterator[Turn]:
             if kind == Kind.WAIT_BEGIN:
                 cpu.pass_time(0 if woken_ns is None else time_ns - woken_ns)
                 woken_ns = None
+                due_ns = time_ns + value if 0 < value < _FOREVER_NS else None
                 yield from cpu.read(number)
         elif kind == Kind.RELEASE:
             turn = Turn(endpoint_id(slot, incarnation), time_ns)
@@ -120,6 +125,7 @@ def turns_of(rows: Iterable[Row], outside: Outside) -> Iterator[Turn]:
             yield from cpu.read(number)
             woken_ns = time_ns
             turn = Turn(None, time_ns, timed_out=value == 0)
+            turn.due_ns = due_ns if due_ns is not None and due_ns <= time_ns else None
     yield from cpu.rest()
     if turn is not None:
         yield turn

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from rmw_manycore_py.profile.model import Profile
+from rmw_manycore_py.profile.periods import nominal_ns
 from rmw_manycore_py.profile.recorded import profile_of
 from rmw_manycore_py.profile.summary import summary_of
 from rmw_manycore_py.trace.events import (
@@ -58,10 +59,12 @@ def trace_of(*threads: list, lost: int = 0) -> Trace:
     return Trace("test", (process,), endpoints, 0)
 
 
-def wait(begin_us: int, end_us: int, cpu_us: tuple[int, int], *, ready: bool = True) -> list:
+def wait(
+    begin_us: int, end_us: int, cpu_us: tuple[int, int], *, ready: bool = True, timeout_us: int = 0
+) -> list:
     """Return a wait, with the CPU time of the thread at begin and end."""
     return [
-        event(begin_us, Kind.WAIT_BEGIN, NO_ENDPOINT, cpu_us[0] * US),
+        event(begin_us, Kind.WAIT_BEGIN, NO_ENDPOINT, cpu_us[0] * US, timeout_us * US),
         event(end_us, Kind.WAIT_END, NO_ENDPOINT, cpu_us[1] * US, int(ready)),
     ]
 
@@ -150,6 +153,35 @@ def test_receive_threads_have_their_cpu_time_per_message() -> None:
     profile = profile_of(Trace("test", (*trace.processes, process), trace.endpoints, 0), 0, 10**9)
     assert profile.receive_ns == pytest.approx(500 / 11 * US)
     assert profiled([]).receive_ns is None
+
+
+def test_a_timer_has_the_period_that_rcl_waits_for() -> None:
+    rows = []
+    for i in range(20):
+        if i % 5 == 3:
+            continue  # missed
+        due_us = 20_000 * i + 10_000
+        # Begins late, up to half a period; rcl read the clock 1 us before a wait in three.
+        late_us = 700 * (13 * i % 14)
+        due = {"timeout_us": 5000 + (i % 3 == 0)}
+        rows += wait(due_us - 5000, due_us + late_us, (0, 0), ready=False, **due)
+        rows += publish(due_us + late_us + 100, TIMED, i)
+    rows.append(event(600_000, Kind.WAIT_BEGIN, NO_ENDPOINT))
+    (timer,) = profiled(rows, until_us=600_000).callbacks
+    assert timer.interval_ns is not None
+    assert timer.interval_ns.mean != pytest.approx(20_000 * US, rel=0.1)
+    assert timer.period_ns == 20_000 * US
+
+
+@pytest.mark.parametrize("period_ns", [33_333_333, 10_005_000, 2_500_000])
+def test_a_known_period_is_not_rounded(period_ns: int) -> None:
+    due_ns = [(5 + number) * period_ns + number % 2 for number in range(50)]
+    assert nominal_ns(due_ns, 1.2 * period_ns) == pytest.approx(period_ns, abs=1)
+
+
+def test_a_measured_period_is_rounded() -> None:
+    assert nominal_ns((), 99_991_234.5) == 100_000_000
+    assert nominal_ns((0,), 33_331_234.5) == 33_331_234
 
 
 def test_a_request_triggers_a_service() -> None:
