@@ -9,6 +9,7 @@ process takes time to start.
 
 from __future__ import annotations
 
+import os
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -120,7 +121,7 @@ class MapBuilder:
     def _first(self, source: Source) -> tuple[VoxelMap, HeldMap]:
         built, held = map_process.built(source, self._options, with_points=self._with_points)
         self._is_first = False
-        self._executor.submit(self._helper.call, map_process.let_go)  # starts the helper
+        self._executor.submit(self._helper.call, os.getpid)  # starts the helper
         return built, held
 
     def _next(self, source: Source) -> tuple[VoxelMap, HeldMap]:
@@ -129,4 +130,4 @@ class MapBuilder:
             attached = VoxelMap.attach(held.shared_paths, self._options, held.own_likelihood)
             return attached, held
         finally:
-            self._helper.call(map_process.let_go)
+            self._helper.call(map_process.let_go, held.shared_paths)

@@ -15,7 +15,9 @@ from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
 Source: TypeAlias = Points | TileFiles
 
-_held: list[VoxelMap] = []  # until another process has attached to it
+# By its first path, until another process has attached to it. In virtual time the builders of a
+# process share it.
+_held: dict[str, VoxelMap] = {}
 _tiles: dict[Path, Points] = {}  # of the last map
 
 
@@ -36,7 +38,7 @@ class HeldMap:
 def build(source: Source, options: MatcherOptions, with_points: bool) -> HeldMap:
     """Build a map and hold it until `let_go`."""
     voxel_map, held = built(source, options, with_points=with_points)
-    _held[:] = [voxel_map]
+    _held[held.shared_paths[0]] = voxel_map
     return held
 
 
@@ -51,6 +53,6 @@ def built(
     return voxel_map, HeldMap(*where, returned, why_coarse(points))
 
 
-def let_go() -> None:
-    """Release the map; processes that have attached keep it."""
-    _held.clear()
+def let_go(shared_paths: list[str]) -> None:
+    """Release a map; processes that have attached keep it."""
+    _held.pop(shared_paths[0], None)

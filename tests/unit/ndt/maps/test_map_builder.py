@@ -10,7 +10,9 @@ import threading
 import numpy as np
 import pytest
 
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
+from rmw_manycore_py.ndt.maps import map_process
 from rmw_manycore_py.ndt.maps.map_builder import MapBuilder
 from rmw_manycore_py.ndt.maps.map_tiles import TileFiles, open_map, write_tiles
 
@@ -96,3 +98,16 @@ def test_a_map_outlives_the_process_that_built_it_and_is_what_it_would_be_here()
         matcher.set_map(voxel_map)
         found.append(matcher.align(points[::5], np.eye(4)).T_map_sensor.tolist())
     assert found[0] == found[1] == found[2]
+
+
+def test_a_map_is_held_until_it_is_let_go_itself():
+    """In virtual time the builders of a process hold their maps in one place."""
+    points = np.random.default_rng(1).uniform(0, 20, (20000, 3)).astype("f4")
+    options = MatcherOptions()
+    ours, theirs = (map_process.build(points, options, with_points=False) for _ in range(2))
+    map_process.let_go(theirs.shared_paths)
+    attached = VoxelMap.attach(ours.shared_paths, options, ours.own_likelihood)
+    assert attached.voxels > 100
+    map_process.let_go(ours.shared_paths)
+    with pytest.raises(ManycoreError):
+        VoxelMap.attach(ours.shared_paths, options, ours.own_likelihood)
