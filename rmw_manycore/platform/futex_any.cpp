@@ -5,16 +5,13 @@
 #include <cerrno>
 #include <ctime>
 
+#include "platform/wall_sleep.hpp"
+
 namespace manycore {
 namespace {
 
 constexpr long futex_waitv_number = 449;  // the same on all architectures except Alpha
 constexpr int64_t poll_period_ns = 10'000'000;
-
-void sleep_until(int64_t deadline_ns) noexcept {
-  const timespec until = to_timespec(deadline_ns);
-  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
-}
 
 }  // namespace
 
@@ -24,7 +21,7 @@ void futex_wait_any(std::vector<AwaitedWord> & words, std::optional<int64_t> dea
     futex_waitv_number, words.data(), words.size(), 0, deadline_ns ? &until : nullptr,
     CLOCK_MONOTONIC);
   if (woken < 0 && errno != EAGAIN && errno != EINTR && errno != ETIMEDOUT) {
-    sleep_until(std::min(deadline_ns.value_or(INT64_MAX), monotonic_ns() + poll_period_ns));
+    wall_sleep_until(std::min(deadline_ns.value_or(INT64_MAX), monotonic_ns() + poll_period_ns));
   }
 }
 

@@ -6,13 +6,14 @@
 #include <thread>
 
 #include "platform/blocked_signals.hpp"
+#include "platform/wall_sleep.hpp"
 
 namespace manycore {
 
 void exit_after(std::chrono::nanoseconds delay, int status) {
   const BlockedSignals blocked;
   std::thread([=] {
-    std::this_thread::sleep_for(delay);
+    wall_sleep_for(delay);
     _exit(status);
   }).detach();
 }

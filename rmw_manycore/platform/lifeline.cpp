@@ -6,6 +6,7 @@
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
 #include "platform/file_lock.hpp"
+#include "platform/wall_sleep.hpp"
 
 namespace manycore {
 namespace {
@@ -27,9 +28,7 @@ void wait_for_stragglers(const ProcessIdentity & dying) {
   try {
     dying.wait_for_end(enough_ms);
   } catch (const Error &) {
-    timespec left = to_timespec(enough_ms * ns_per_s / 1000);  // no descriptor left for a pidfd
-    while (nanosleep(&left, &left) != 0) {
-    }
+    wall_sleep_for(std::chrono::milliseconds(enough_ms));  // no descriptor left for a pidfd
   }
 }
 

@@ -17,9 +17,9 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <thread>
 
 #include "platform/error.hpp"
+#include "platform/wall_sleep.hpp"
 
 extern char ** environ;
 
@@ -131,7 +131,7 @@ int spawn_daemon(const std::vector<std::string> & arguments) {
   int error = ETXTBSY;
   for (int tries = 0; error == ETXTBSY && tries < busy_tries; ++tries) {
     if (tries > 0) {
-      std::this_thread::sleep_for(busy_pause);
+      wall_sleep_for(busy_pause);
     }
     error = posix_spawn(&pid, argv[0], &actions, &attributes, argv.data(), environ);
   }

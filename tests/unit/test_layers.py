@@ -47,6 +47,9 @@ ROS_HEADER = re.compile(r"(rmw|rcl|rcutils|rcpputils|rosidl_\w+|fastcdr|\w+_msgs
 # System calls for mapping, pinning and futexes are wrapped in one place.
 PLATFORM_ONLY = {"sys/mman.h", "linux/futex.h", "sys/syscall.h", "sched.h"}
 CALLS_THE_SYSTEM = {"platform", "bench"}
+# Sleeps of libc pass in virtual time, which those of the middleware itself must not move.
+VIRTUAL_SLEEP = re.compile(r"\bthis_thread::sleep|\b(clock_)?nanosleep\(|\busleep\(")
+SLEEPS_VIRTUALLY = {"virtual_time", "bench"}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]', re.MULTILINE)
 
@@ -57,6 +60,15 @@ def native_files() -> list[Path]:
 
 def directory_of(path: Path) -> str:
     return path.relative_to(NATIVE).parts[0]
+
+
+def test_the_middleware_sleeps_in_wall_time() -> None:
+    found = [
+        str(path.relative_to(NATIVE))
+        for path in native_files()
+        if directory_of(path) not in SLEEPS_VIRTUALLY and VIRTUAL_SLEEP.search(path.read_text())
+    ]
+    assert not found, "use platform/wall_sleep.hpp"
 
 
 def folder_layer(path: Path) -> int:

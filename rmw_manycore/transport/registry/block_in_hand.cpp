@@ -3,10 +3,10 @@
 
 #include <chrono>
 #include <cstring>
-#include <thread>
 #include <utility>
 
 #include "platform/clock.hpp"
+#include "platform/wall_sleep.hpp"
 
 namespace manycore {
 namespace {
@@ -99,7 +99,7 @@ bool BlockInHand::await_another(const NeededBlock & needed) const {
       return false;
     }
     was_made = true;
-    std::this_thread::sleep_for(look_again_after);
+    wall_sleep_for(look_again_after);
   }
   return was_made;
 }

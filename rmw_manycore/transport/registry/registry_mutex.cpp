@@ -6,6 +6,7 @@
 
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
+#include "platform/wall_sleep.hpp"
 
 namespace manycore {
 namespace {
@@ -166,8 +167,7 @@ void RegistryMutex::give_back(Taken & taken) noexcept {
 void RegistryMutex::let_others_go_first() const noexcept {
   const int64_t until_ns = others_first_until_ns_.load(std::memory_order_relaxed);
   if (monotonic_ns() < until_ns) {
-    const timespec until = to_timespec(until_ns);
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+    wall_sleep_until(until_ns);
   }
 }
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <thread>
 
+#include "platform/wall_sleep.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 
 namespace manycore {
@@ -62,7 +62,7 @@ uint64_t ReceptionCounts::lost() const noexcept {
   constexpr int max_looks = 20'000;
   DisplacedCount displaced = header_.displaced();
   for (int look = 0; !displaced.is_exact && look < max_looks; ++look) {
-    std::this_thread::sleep_for(std::chrono::microseconds(50));
+    wall_sleep_for(std::chrono::microseconds(50));
     displaced = header_.displaced();
   }
   const uint64_t now = missed_so_far(entry_, header_, displaced.hints).lost;
