@@ -81,7 +81,10 @@ def _communications(subscriptions: Sequence[Subscription]) -> Iterator[Communica
         if one.taken:
             times = [(taken.callback_ns - taken.message.published_ns) / 1e3 for taken in one.taken]
             p50_us, p99_us = np.quantile(times, (0.5, 0.99)).tolist()
-            yield Communication(one.node, one.topic, len(times), p50_us, p99_us)
+            ages = [(taken.callback_ns - taken.message.origin_ns) / 1e3 for taken in one.taken]
+            yield Communication(
+                one.node, one.topic, len(times), p50_us, p99_us, float(np.median(ages))
+            )
 
 
 def _links(simulation: Simulation, duration_s: float) -> Iterator[LinkUse]:

@@ -71,13 +71,17 @@ class QueueUse:
 
 @dataclass(frozen=True)
 class Communication:
-    """Times from the call of publish to the begin of a subscription's callback, in us."""
+    """Times from the call of publish to the begin of a subscription's callback, in us.
+
+    :ivar age_us: likewise, from the first publication of the chain; the median.
+    """
 
     node: str
     topic: str
     count: int
     p50_us: float
     p99_us: float
+    age_us: float
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,14 @@ class Message:
     unread: int
     is_gone: bool = False
 
+    @property
+    def origin_ns(self) -> float:
+        """When the first message of its chain was published."""
+        message = self
+        while message.cause is not None:
+            message = message.cause.message
+        return message.published_ns
+
 
 @dataclass(eq=False, slots=True)
 class Taken:

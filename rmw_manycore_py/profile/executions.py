@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from array import array
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from rmw_manycore_py.profile.babeltrace import Event, ThreadId
 from rmw_manycore_py.profile.entities import Entities
@@ -18,12 +18,27 @@ def _times() -> array[int]:
 
 
 @dataclass
+class _Published:
+    """Publications of a topic: when they were, and when the first of their chain was.
+
+    A chain begins with a publication that is not by the callback of a subscription.
+    """
+
+    times_ns: array[int] = field(default_factory=_times)
+    origins_ns: array[int] = field(default_factory=_times)
+
+
+@dataclass
 class _Running:
-    """A callback that runs on a thread."""
+    """A callback that runs on a thread.
+
+    :ivar origin_ns: of the message that it handles, if it is known.
+    """
 
     at: int
     callback: CallbackSeen
     begin_ns: int
+    origin_ns: int | None = None
     encloses: bool = False
 
 
@@ -36,7 +51,7 @@ class Executions:
         self._entities = entities
         self._current: dict[Address, tuple[Registration | None, CallbackSeen]] = {}
         self._running: dict[ThreadId, list[_Running]] = defaultdict(list)
-        self._published: dict[str, array[int]] = defaultdict(_times)  # by topic
+        self._published: dict[str, _Published] = defaultdict(_Published)  # by topic
         self._ended_ns: dict[Address, int] = {}  # of the last callback, by pid and tid
         self._counts = dict.fromkeys(Coverage.model_fields, 0)
 
@@ -53,10 +68,11 @@ class Executions:
             running[-1].encloses = True
         at = event.handle
         callback = self._callback((event.thread.pid, at))
-        running.append(_Running(at, callback, event.time_ns))
+        begun = _Running(at, callback, event.time_ns)
+        running.append(begun)
         published = self._published.get(callback.trigger.name)
         if published and callback.trigger.kind == "subscription":
-            self._match(event, callback, published)
+            begun.origin_ns = self._match(event, callback, published)
 
     def end(self, event: Event) -> None:
         """Handle the end of a callback. Those begun inside it have ended, too."""
@@ -86,36 +102,44 @@ class Executions:
             self._counts["publications_of_unknown_publishers"] += 1
             return
         publisher.times_ns.append(event.time_ns)
-        self._published[publisher.topic].append(event.time_ns)
+        published = self._published[publisher.topic]
+        published.times_ns.append(event.time_ns)
         running = self._running[event.thread]
         if not running:
+            published.origins_ns.append(event.time_ns)
             publisher.outside_callbacks += 1
             self._counts["publications_outside_callbacks"] += 1
             return
         cause = self._cause(publisher, running)
+        origin_ns = event.time_ns if cause.origin_ns is None else cause.origin_ns
+        published.origins_ns.append(origin_ns)
         offsets_ns = cause.callback.offsets_ns.get(publisher)
         if offsets_ns is None:
             offsets_ns = cause.callback.offsets_ns[publisher] = array("q")
         offsets_ns.append(event.time_ns - cause.begin_ns)
 
-    def _match(self, event: Event, callback: CallbackSeen, published: array[int]) -> None:
-        """Note how long the message of a callback was under way.
+    def _match(self, event: Event, callback: CallbackSeen, published: _Published) -> int:
+        """Note how long the message of a callback was under way; return its origin.
 
         It is the newest one if the thread was idle when that was published, else the next one that
         the queue still holds.
         """
-        newest = len(published) - 1
-        is_idle = self._ended_ns.get(event.thread, 0) <= published[newest]
+        times_ns = published.times_ns
+        newest = len(times_ns) - 1
+        is_idle = self._ended_ns.get(event.thread, 0) <= times_ns[newest]
         if is_idle or not callback.queued_ns:
             number = newest
         else:
             depth = callback.trigger.queue_depth or 1
             number = min(max(callback.next_message, newest + 1 - depth), newest)
-        queued_ns = event.time_ns - published[number]
+        queued_ns = event.time_ns - times_ns[number]
         callback.next_message = number + 1
         callback.queued_ns.append(queued_ns)
         if is_idle:
             callback.dispatch_ns.append(queued_ns)
+        origin_ns = published.origins_ns[number]
+        callback.age_ns.append(event.time_ns - origin_ns)
+        return origin_ns
 
     def _cause(self, publisher: PublisherSeen, running: list[_Running]) -> _Running:
         """Return the callback of the publisher's node; else, or of several, the innermost."""

@@ -109,6 +109,7 @@ class Callback(_Row):
     publishes: tuple[Output, ...]
     dispatch_ns: Distribution | None = None  # before its begin: the executor's work, and the take
     queued_ns: Distribution | None = None  # from the call of publish to the begin
+    age_ns: Distribution | None = None  # likewise, from the first publication of the chain
 
     @property
     def load_cpus(self) -> float:

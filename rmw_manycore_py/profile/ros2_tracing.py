@@ -158,6 +158,7 @@ def _callback(one: CallbackSeen, process: int, tids: list[int], span: _Span) -> 
         ),
         dispatch_ns=distribution_of(one.dispatch_ns),
         queued_ns=distribution_of(one.queued_ns),
+        age_ns=distribution_of(one.age_ns),
     )
 
 

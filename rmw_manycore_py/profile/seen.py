@@ -88,5 +88,6 @@ class CallbackSeen:
     durations_ns: array[int] = field(default_factory=_samples)
     offsets_ns: dict[PublisherSeen, array[int]] = field(default_factory=dict)
     queued_ns: array[int] = field(default_factory=_samples)
+    age_ns: array[int] = field(default_factory=_samples)
     dispatch_ns: array[int] = field(default_factory=_samples)  # those with an idle thread
     next_message: int = 0  # of its topic

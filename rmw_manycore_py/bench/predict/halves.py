@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""One part of a run predicts another: from the call of publish to the begin of each callback."""
+"""One part of a run predicts another: from publications to the begins of callbacks."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.prediction import Sites, predict
 from rmw_manycore_py.profile.model import Profile
 
+_Medians = dict[tuple[str, str], float]  # by node and topic
+
 MIN_MESSAGES = 50  # in the profile that is predicted
 # The profile's times before a callback have all of it: publish, transport, and waking.
 _TARGET = UNSHARED.changed(
@@ -19,7 +21,7 @@ _TARGET = UNSHARED.changed(
 
 
 @dataclass(frozen=True)
-class Queueing:
+class PartErrors:
     """Median errors over subscriptions that are in both profiles.
 
     :ivar repeated: error of taking the first profile's median as it is.
@@ -31,20 +33,46 @@ class Queueing:
     repeated: float
 
 
-def queueing_of(first: Profile, second: Profile, duration_s: float, seed: int) -> Queueing:
+@dataclass(frozen=True)
+class Parts:
+    """How well one part predicts the other.
+
+    :ivar queueing: of times from the call of publish to the begin of the callback.
+    :ivar chains: from the first publication of the chain, for subscriptions most of whose messages
+        were published in callbacks of others; None if there are none.
+    """
+
+    queueing: PartErrors
+    chains: PartErrors | None
+
+
+def parts_of(first: Profile, second: Profile, duration_s: float, seed: int) -> Parts:
     """Predict the second profile from the first.
 
     :raises ManycoreError: if they have no subscription with enough messages in common.
     """
-    measured = _medians_us(second)
-    before = _medians_us(first, 1)
     found = predict(Sites({}), first, _TARGET, seed=seed, duration_s=duration_s, chains=())
-    predicted = {(one.node, one.topic): one.p50_us for one in found.communications}
-    common = [key for key in measured if key in predicted and key in before]
-    if not common:
+    queueing = _errors(
+        {(one.node, one.topic): one.p50_us for one in found.communications},
+        _medians_us(first, 1),
+        _medians_us(second),
+    )
+    chains = _errors(
+        {(one.node, one.topic): one.age_us for one in found.communications},
+        _ages_us(first, 1),
+        _ages_us(second),
+    )
+    if queueing is None:
         text = "the profiles have no subscription in common with times from publish to callback"
         raise ManycoreError(text, EXIT_BAD_INPUT)
-    return Queueing(
+    return Parts(queueing, chains)
+
+
+def _errors(predicted: _Medians, before: _Medians, measured: _Medians) -> PartErrors | None:
+    common = [key for key in measured if key in predicted and key in before]
+    if not common:
+        return None
+    return PartErrors(
         len(common),
         len(measured) - len(common),
         median(abs(predicted[key] / measured[key] - 1) for key in common),
@@ -52,7 +80,7 @@ def queueing_of(first: Profile, second: Profile, duration_s: float, seed: int) -
     )
 
 
-def _medians_us(profile: Profile, min_messages: int = MIN_MESSAGES) -> dict[tuple[str, str], float]:
+def _medians_us(profile: Profile, min_messages: int = MIN_MESSAGES) -> _Medians:
     middle = profile.quantile_shares.index(0.5)
     return {
         (profile.nodes[one.node].name, one.trigger): one.queued_ns.quantiles[middle] / 1e3
@@ -61,3 +89,15 @@ def _medians_us(profile: Profile, min_messages: int = MIN_MESSAGES) -> dict[tupl
         and one.node is not None
         and (one.queued_ns.count or 0) >= min_messages
     }
+
+
+def _ages_us(profile: Profile, min_messages: int = MIN_MESSAGES) -> _Medians:
+    """Return the median ages of messages that came through other callbacks."""
+    middle = profile.quantile_shares.index(0.5)
+    queued_us = _medians_us(profile, min_messages)
+    ages_us = {
+        (profile.nodes[one.node].name, one.trigger): one.age_ns.quantiles[middle] / 1e3
+        for one in profile.callbacks
+        if one.age_ns is not None and one.node is not None
+    }
+    return {key: ages_us[key] for key, own in queued_us.items() if ages_us.get(key, 0.0) > own}

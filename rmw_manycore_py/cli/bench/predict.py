@@ -14,7 +14,7 @@ from rich.console import Console
 
 from rmw_manycore_py.bench.machine import machine_header
 from rmw_manycore_py.bench.predict.errors import MappingError, Order, error_of, order_of
-from rmw_manycore_py.bench.predict.halves import Queueing, queueing_of
+from rmw_manycore_py.bench.predict.halves import PartErrors, Parts, parts_of
 from rmw_manycore_py.bench.predict.reports import ReportedChain, reported_chains
 from rmw_manycore_py.bench.predict.runs import Compared, Plan, compared
 from rmw_manycore_py.cli.bench.options import mapping_runs_options
@@ -81,7 +81,7 @@ def command(
             plan = Plan(mapfile, directory, mappings, repetitions, duration_s, seed)
             found[plan.name] = compared(plan, status.update)
         chains = reported_chains(report, seed) if report else []
-        queueing = _parts(*parts, seed) if parts else None
+        halves = _parts(*parts, seed) if parts else None
     rows = {name: _row(of) for name, of in found.items()}
     if as_json:
         print_json(
@@ -89,7 +89,7 @@ def command(
                 "machine": machine_header(),
                 "applications": rows,
                 "report": [asdict(one) for one in chains],
-                "parts": asdict(queueing) if queueing else None,
+                "parts": asdict(halves) if halves else None,
             }
         )
         return
@@ -97,12 +97,14 @@ def command(
         _show(name, of)
     if chains:
         _show_report(chains)
-    if queueing:
-        _show_parts(queueing)
+    if halves:
+        _show_parts("from publish to callback", halves.queueing)
+    if halves and halves.chains:
+        _show_parts("along chains", halves.chains)
 
 
-def _parts(first: Path, second: Path, seed: int) -> Queueing:
-    return queueing_of(load(first), load(second), _PARTS_S, seed)
+def _parts(first: Path, second: Path, seed: int) -> Parts:
+    return parts_of(load(first), load(second), _PARTS_S, seed)
 
 
 def _row(mappings: Sequence[Compared]) -> dict[str, Any]:
@@ -174,9 +176,9 @@ def _show_report(chains: Sequence[ReportedChain]) -> None:
     print_table(table)
 
 
-def _show_parts(found: Queueing) -> None:
+def _show_parts(what: str, found: PartErrors) -> None:
     echo(
-        f"\nfrom publish to callback, {found.subscriptions} subscriptions of both parts "
+        f"\n{what}, {found.subscriptions} subscriptions of both parts "
         f"({found.only_in_second} others): median error {_percent(found.error)}; "
         f"repeating the first part {_percent(found.repeated)}"
     )

@@ -7,7 +7,7 @@ import pytest
 
 from rmw_manycore_py.bench.predict.errors import error_of, order_of
 from rmw_manycore_py.bench.predict.figures import Figures, Times
-from rmw_manycore_py.bench.predict.halves import queueing_of
+from rmw_manycore_py.bench.predict.halves import parts_of
 from rmw_manycore_py.bench.predict.runs import Compared
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.profile.model import Distribution, Profile
@@ -45,15 +45,37 @@ def with_queued(ms: float, dispatch_ms: float) -> Profile:
 
 
 def test_the_first_part_predicts_the_second() -> None:
-    found = queueing_of(with_queued(3.0, 2.0), with_queued(2.5, 2.5), 10.0, 1)
+    found = parts_of(with_queued(3.0, 2.0), with_queued(2.5, 2.5), 10.0, 1).queueing
     assert found.subscriptions == 2
     assert found.error == pytest.approx(0.2, abs=0.01)  # 2 ms of an idle thread, measured 2.5
     assert found.repeated == pytest.approx(0.2, abs=0.01)
 
 
+def with_age(profile: Profile, ms: float) -> Profile:
+    """Return the profile with this age of what comes to the sink."""
+    age = Distribution(count=100, mean=ms * MS, quantiles=(ms * MS,) * 3)
+    ages = {"/small": age}
+    callbacks = tuple(
+        one.model_copy(update={"age_ns": ages.get(one.trigger, one.queued_ns)})
+        for one in profile.callbacks
+    )
+    return profile.model_copy(update={"callbacks": callbacks})
+
+
+def test_chains_are_compared_from_their_first_publication() -> None:
+    """Camera to sink: 2 ms, the filter's 1 ms, 2 ms; 6.25 ms are measured."""
+    first, second = with_queued(2.5, 2.0), with_queued(2.5, 2.5)
+    chains = parts_of(with_age(first, 6.0), with_age(second, 6.25), 10.0, 1).chains
+    assert chains is not None
+    assert (chains.subscriptions, chains.only_in_second) == (1, 0)
+    assert chains.error == pytest.approx(0.2, abs=0.01)
+    assert chains.repeated == pytest.approx(0.04, abs=0.01)
+    assert parts_of(first, second, 10.0, 1).chains is None
+
+
 def test_parts_without_times_are_refused() -> None:
     with pytest.raises(ManycoreError, match="no subscription in common"):
-        queueing_of(with_queued(1, 1), with_queued(1, 1).model_copy(update={"callbacks": ()}), 1, 1)
+        parts_of(with_queued(1, 1), with_queued(1, 1).model_copy(update={"callbacks": ()}), 1, 1)
 
 
 def figures(p50_us: float, load: float = 0.3) -> Figures:

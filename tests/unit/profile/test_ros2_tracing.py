@@ -79,6 +79,25 @@ def test_a_callback_has_trigger_times_and_publications(imported) -> None:
     assert summary["events"] == len(events)
 
 
+def test_the_age_of_a_message_is_that_of_its_chain(imported) -> None:
+    """Camera, filter, sink; the sink's age is from the camera's publication, by a timer."""
+    events = [
+        *node(1, "camera", topic="/image"), *timer(1),
+        *node(2, "filter", topic="/small"), *subscription(2, "/image"),
+        *node(3, "sink"), *subscription(3, "/small"),
+    ]  # fmt: skip
+    for at_ms in (100, 200, 300):
+        events += [begin(at_ms, 1, 1, FROM_TIMER), published(at_ms + 1, 1, 1)]
+        events += [end(at_ms + 2, 1, 1, FROM_TIMER), begin(at_ms + 3, 2, 2, FROM_TOPIC)]
+        events += [published(at_ms + 10, 2, 2), end(at_ms + 11, 2, 2, FROM_TOPIC)]
+        events += [begin(at_ms + 14, 3, 3, FROM_TOPIC), end(at_ms + 15, 3, 3, FROM_TOPIC)]
+    found = {}
+    for one in imported(*events).callbacks:
+        if one.age_ns is not None and one.queued_ns is not None:
+            found[one.trigger] = (one.queued_ns.mean / MS, one.age_ns.mean / MS, one.age_ns.count)
+    assert found == {"/image": (2, 2, 3), "/small": (4, 13, 3)}
+
+
 def test_timers_and_services_are_triggers(imported) -> None:
     service = [
         made(0, "rcl_service_init", 1, 1, service_handle=9, node_handle=NODE, service_name="/s"),
