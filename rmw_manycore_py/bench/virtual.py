@@ -30,15 +30,40 @@ _LOGGED = {Kind.WRITE: "publishes", Kind.RELEASE: "takes"}
 class VirtualRun:
     """A run in virtual time.
 
-    :ivar log: what nodes printed, and their messages with the virtual time of each.
+    :ivar printed: by nodes.
+    :ivar messages: what nodes published and took, with the virtual time of each.
     :ivar trace: its events.
     :ivar wall_s: from the start of the command to its end.
     """
 
     condition: str
-    log: tuple[str, ...]
+    printed: tuple[str, ...]
+    messages: tuple[str, ...]
     trace: Trace
     wall_s: float
+
+    @property
+    def log(self) -> tuple[str, ...]:
+        """What runs have in common."""
+        return self.printed + self.messages
+
+    @property
+    def published(self) -> int:
+        """Number of messages."""
+        return sum(" publishes " in line for line in self.messages)
+
+    @property
+    def taken(self) -> int:
+        """Number of takes."""
+        return len(self.messages) - self.published
+
+    @property
+    def lost(self) -> int:
+        """Messages that a full queue lost."""
+        return sum(
+            int(thread.events["value"][thread.events["kind"] == Kind.LOST].sum())
+            for _, thread in self.trace.threads()
+        )
 
     @property
     def digest(self) -> str:
@@ -65,8 +90,10 @@ def runs_of(
             output = _output_of(own_program("rmw_manycore_py.cli", *words, *length), timeout_s)
             wall_s = time.monotonic() - begin_s
             trace = load(path)
-            log = (*_printed(output), *_messages(trace))
-            yield VirtualRun(condition, log, trace, wall_s)
+            if trace.lost:
+                raise ManycoreError(f"{trace.lost} events are missing, as rings were full")
+            seen = tuple(_printed(output)), tuple(_messages(trace))
+            yield VirtualRun(condition, *seen, trace, wall_s)
 
 
 @contextmanager
@@ -92,7 +119,8 @@ def _output_of(command: Sequence[str], timeout_s: float) -> str:
         why = f": {notices[-1]}" if notices else ""
         raise ManycoreError(f"the run did not end within {timeout_s:g} s{why}") from error
     if process.returncode:
-        raise ManycoreError(f"the run failed with exit status {process.returncode}")
+        last = [f": {one['line']}" for one in _events(output) if one["event"] == "output"][-1:]
+        raise ManycoreError(f"the run failed with exit status {process.returncode}{''.join(last)}")
     return output
 
 
@@ -117,6 +145,7 @@ def _messages(trace: Trace) -> list[str]:
         for time_ns, number, _, slot, incarnation, kind in thread.events.tolist():
             if kind in _LOGGED:
                 endpoint = endpoint_id(slot, incarnation)
-                node, topic = trace.node_of(endpoint), trace.topic_of(endpoint)
+                node = trace.node_of(endpoint).removesuffix(f"_{process.pid}")
+                topic = trace.topic_of(endpoint)
                 found.append(f"{time_ns} {node} {_LOGGED[kind]} {topic} {number}")
     return sorted(found)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -185,3 +186,15 @@ def test_a_recording_is_played_at_its_times(mapfile, log_of, tmp_path: Path) -> 
     after_us = [round((int(at_ns) - first_ns) / 1000) for _, at_ns, _ in heard]
     assert [text for text, *_ in heard] == [str(number) for number in range(200)]
     assert after_us == [10_000 * number for number in range(200)]
+
+
+@pytest.mark.needs("mcap")
+def test_the_bench_plays_a_recording_without_losses(tmp_path: Path, manycore) -> None:
+    texts = [("/news", number / 100, str(number)) for number in range(100)]
+    bag = write_texts(tmp_path / "bag.mcap", texts)
+    report = json.loads(
+        manycore("bench", "virtual", bag, "--runs", "2", "--duration", "3", "--json")
+    )
+    counts = [(run["taken"], run["lost"]) for run in report["runs"]]
+    assert counts == [(100, 0)] * 2
+    assert report["runs"][0]["digest"] == report["runs"][1]["digest"]

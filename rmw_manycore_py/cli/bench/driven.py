@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The installed mapfiles of papers, with the vehicle that they need as a node of the run."""
+"""Mapfiles that run by themselves: of papers with their vehicle, and of recordings."""
 
 from __future__ import annotations
 
@@ -7,7 +7,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
+import click
+
+from rmw_manycore_program import own_program
+from rmw_manycore_py.bench.session import NODES
+from rmw_manycore_py.extras import MCAP, require
+from rmw_manycore_py.mapfile.installed import installed_mapfiles
+from rmw_manycore_py.papers.reference_system.bench.native_mapfile import with_native_nodes
 from rmw_manycore_py.papers.roslite.bench.drives import LENGTH_M
 from rmw_manycore_py.papers.roslite.variants import AFTER, installed, with_vehicle, write
 from rmw_manycore_py.papers.roslite.vehicle.course import Course as Street
@@ -19,24 +27,69 @@ from rmw_manycore_py.papers.roslite2.course.directory import (
 from rmw_manycore_py.papers.roslite2.course.shape import CourseShape
 from rmw_manycore_py.papers.roslite2.course.synthetic import synthetic_course
 
+REFERENCE = "autoware_reference.yaml"
+RECORDING = ".mcap"
+_DELAY_S = 1.0  # for the reader of a recording to start
+
 
 @contextmanager
-def driven(mapfile: Path) -> Iterator[Path]:
-    """Yield a mapfile that runs by itself: this one, unless it is named `ros_lite` or `whill`."""
-    with_laptop = mapfile.parent / VIRTUAL_MAPFILE
-    if mapfile.name == MAPFILE and with_laptop.exists():
-        yield with_laptop
-        return
-    if mapfile.name not in (AFTER, MAPFILE):
-        yield mapfile
-        return
+def driven(mapfile: Path, *, native: bool = False) -> Iterator[Path]:
+    """Yield a mapfile that runs by itself.
+
+    That is this one, unless it is an installed one of a paper, or a recording.
+    """
     with TemporaryDirectory(prefix="driven-") as name:
         directory = Path(name)
-        if mapfile.name == AFTER:
-            map_path = Street(LENGTH_M, waypoints=2).write_map(directory)
-            report = str(directory / "drive.json")
-            driven = with_vehicle(installed(AFTER), map_path, length=LENGTH_M, report=report)
-            yield write(driven, directory / "ros_lite.yaml")
-        else:
+        with_laptop = mapfile.parent / VIRTUAL_MAPFILE
+        if native:
+            if not _is_installed(mapfile, REFERENCE):
+                raise click.UsageError("--native is for autoware_reference.")
+            yield write(with_native_nodes(installed(REFERENCE)), directory / REFERENCE)
+        elif mapfile.suffix == RECORDING:
+            yield write(_played(mapfile), directory / "played.yaml")
+        elif mapfile.name == MAPFILE and with_laptop.exists():
+            yield with_laptop
+        elif _is_installed(mapfile, MAPFILE):
             write_course(directory, synthetic_course(CourseShape(), seed=1), mapfile)
             yield directory / VIRTUAL_MAPFILE
+        elif _is_installed(mapfile, AFTER):
+            map_path = Street(LENGTH_M, waypoints=2).write_map(directory)
+            report = str(directory / "drive.json")
+            complete = with_vehicle(installed(AFTER), map_path, length=LENGTH_M, report=report)
+            yield write(complete, directory / "ros_lite.yaml")
+        else:
+            yield mapfile
+
+
+def _is_installed(mapfile: Path, name: str) -> bool:
+    """Whether a file is the installed one of this name, or a copy of it."""
+    known = {file.name: file for file in installed_mapfiles().values()}
+    return (
+        mapfile.name == name and name in known and mapfile.read_bytes() == known[name].read_bytes()
+    )
+
+
+def _played(recording: Path) -> dict[str, Any]:
+    """Return a mapfile that plays a recording to one subscription of each topic."""
+    require(MCAP)
+    from rmw_manycore_py.recording.recording import Recording
+
+    with Recording(recording) as opened:
+        topics = [f"{row.name}={row.type}" for row in opened.topics]
+    play = ("topic", "play", str(recording.absolute()), "--delay", f"{_DELAY_S:g}")
+    programs = {
+        "hearer": own_program(f"{NODES}.hearer", *topics),
+        "player": own_program("rmw_manycore_py.cli", *play),
+    }
+    return {
+        "platform": "coolidge",
+        "nodes": {
+            name: {
+                "command": list(words),
+                "cluster": cluster,
+                "core": 1,
+                "ros_arguments": False,
+            }
+            for cluster, (name, words) in enumerate(programs.items(), start=1)
+        },
+    }

@@ -40,6 +40,8 @@ MAX_DEVIATION = 0.02
         "manycore bench virtual autoware_reference --runs 100 --duration 10",
         "manycore bench virtual map.yaml --profile app.profile.json --platform coolidge",
         "manycore bench virtual map.yaml --profile app.profile.json --chains --runs 2",
+        "manycore bench virtual autoware_reference --native --runs 2 --duration 60",
+        "manycore bench virtual drive.mcap --runs 2 --duration 60",
     ),
 )
 @mapfile_argument()
@@ -60,6 +62,7 @@ MAX_DEVIATION = 0.02
     help="With --profile: callbacks take its medians, and chains are compared with manycore "
     "simulate.",
 )
+@click.option("--native", is_flag=True, help="Native nodes; for autoware_reference.")
 @click.option("--kill", "kills", multiple=True, metavar="NODE@S", help="As of manycore run.")
 @json_option
 def command(
@@ -71,6 +74,7 @@ def command(
     platform_name: str,
     seed: int,
     with_chains: bool,
+    native: bool,
     kills: tuple[str, ...],
     as_json: bool,
 ) -> None:
@@ -80,12 +84,14 @@ def command(
     message with the virtual time at which it is published and taken. The exit status is 1 if a run
     differs from the first one, or with --chains the median of a chain by more than 2 % from the
     simulator's. The installed mapfiles ros_lite and whill get their vehicle as a node.
+
+    MAPFILE may be a recording (.mcap): it is played to one subscription of each topic.
     """
     if with_chains and profile is None:
         raise click.UsageError("--chains needs --profile.")
     found = []
     chains: list[ComparedChain] = []
-    with driven(mapfile) as complete, TemporaryDirectory() as directory:
+    with driven(mapfile, native=native) as complete, TemporaryDirectory() as directory:
         options: list[str] = ["--instant"]
         if profile is not None:
             taken = _of_medians(profile, Path(directory)) if with_chains else profile
@@ -96,7 +102,8 @@ def command(
             if not as_json:
                 echo(
                     f"run {len(found):3}, {one.condition:17}: {one.digest[:16]}, "
-                    f"{len(one.log)} events, {one.wall_s:.1f} s"
+                    f"{one.published} published, {one.taken} taken, {one.lost} lost, "
+                    f"{duration_s:g} s in {one.wall_s:.1f} s"
                 )
         if with_chains:
             model = load(taken), platform_name, seed
@@ -137,7 +144,9 @@ def _row(one: VirtualRun) -> dict[str, object]:
     return {
         "condition": one.condition,
         "digest": one.digest,
-        "events": len(one.log),
+        "published": one.published,
+        "taken": one.taken,
+        "lost": one.lost,
         "wall_s": one.wall_s,
     }
 

@@ -161,26 +161,26 @@ def _start(
     command = (
         own_program(MODULE, *_ros_arguments(member, load))
         if nodes == "rclpy"
-        else _native_command(member, load)
+        else native_command(NATIVE, **native_arguments(member, load))
     )
     with (directory / member.name).open("w") as output, scheduled_as(member.scheduling):
         return session.start(command, party, output=output)
 
 
-def _native_command(member: Member, load: Load) -> list[str | Path]:
-    return native_command(
-        NATIVE,
-        name=member.name,
-        kind=member.kind,
-        inputs=",".join(member.inputs),
-        outputs=",".join(member.outputs),
-        period_ms=member.period_ms,
-        crunch_us=round(load.crunch_ms * US_PER_MS),
-        message=load.message,
-        payload=load.payload,
-        depth=load.depth,
-        report_period_ms=load.report_period_ms,
-    )
+def native_arguments(member: Member, load: Load) -> dict[str, object]:
+    """Return the arguments of a native node, but for its parent."""
+    return {
+        "name": member.name,
+        "kind": member.kind,
+        "inputs": ",".join(member.inputs),
+        "outputs": ",".join(member.outputs),
+        "period_ms": member.period_ms,
+        "crunch_us": round(load.crunch_ms * US_PER_MS),
+        "message": load.message,
+        "payload": load.payload,
+        "depth": load.depth,
+        "report_period_ms": load.report_period_ms,
+    }
 
 
 def _ros_arguments(member: Member, load: Load) -> list[str]:
