@@ -15,6 +15,7 @@ from rmw_manycore_py.profile.model import (
     Callback,
     CallbackKind,
     Coverage,
+    Distribution,
     Node,
     Output,
     Process,
@@ -24,7 +25,7 @@ from rmw_manycore_py.profile.model import (
     indices_of,
 )
 from rmw_manycore_py.profile.overheads import Rest, receive_ns
-from rmw_manycore_py.profile.periods import nominal_ns
+from rmw_manycore_py.profile.periods import is_one_timer, nominal_ns
 from rmw_manycore_py.profile.turns import Outside, Publication, Turn, turns_of
 from rmw_manycore_py.trace.events import Endpoint, EndpointId, Kind, ThreadId, Trace
 
@@ -44,6 +45,29 @@ class _Seen:
     process: int
     threads: set[int] = field(default_factory=set)
     turns: list[Turn] = field(default_factory=list)
+
+    @property
+    def due_ns(self) -> list[int]:
+        """Times at which a timer was due, where they are known."""
+        return [one.due_ns for one in self.turns if one.due_ns is not None]
+
+    @property
+    def interval_ns(self) -> Distribution | None:
+        """From begin to begin."""
+        return intervals_of(array("q", [one.begin_ns for one in self.turns]))
+
+    @property
+    def period_ns(self) -> int | None:
+        """Of a timer."""
+        interval_ns = self.interval_ns
+        if self.kind != "timer" or interval_ns is None:
+            return None
+        return nominal_ns(self.due_ns, interval_ns.quantiles[SHARES.index(0.5)])
+
+    def add(self, other: _Seen) -> None:
+        """Add the executions of a timer that published other topics in these."""
+        self.threads |= other.threads
+        self.turns = sorted(self.turns + other.turns, key=lambda one: one.begin_ns)
 
 
 def profile_of(trace: Trace, begin_ns: int, end_ns: int) -> Profile:
@@ -72,6 +96,7 @@ class _Recorded:
             within = events[(events["time_ns"] >= begin_ns) & (events["time_ns"] <= end_ns)]
             if len(within) and _takes_or_publishes(within["kind"].tolist()):
                 self._follow(thread, within.tolist())
+        self._unite_timers()
 
     def _follow(self, thread: ThreadId, rows: list[tuple[int, int, int, int, int, int]]) -> None:
         process = (thread[0], thread[1])
@@ -120,6 +145,26 @@ class _Recorded:
                 trigger = ""
             self._callbacks[key] = _Seen(kind, node, trigger, turn.trigger, process)
         return self._callbacks[key]
+
+    def _unite_timers(self) -> None:
+        """Unite what one timer did: what it publishes may change, when it is due does not."""
+        timers: list[tuple[_Seen, int]] = []
+        ordered = sorted(self._callbacks.items(), key=lambda one: len(one[1].turns), reverse=True)
+        for key, seen in ordered:
+            period_ns = seen.period_ns
+            if period_ns is None:
+                continue
+            for other, other_ns in timers:
+                near = seen.process == other.process and "" in (seen.node, other.node)
+                if (near or seen.node == other.node) and is_one_timer(
+                    other_ns, other.due_ns, seen.due_ns
+                ):
+                    other.add(seen)
+                    other.node = other.node or seen.node
+                    del self._callbacks[key]
+                    break
+            else:
+                timers.append((seen, period_ns))
 
     def profile(self) -> Profile:
         labels = {(one.cluster, one.pid): one.label for one in self._trace.processes}
@@ -174,19 +219,14 @@ class _Recorded:
 
     def _callback(self, seen: _Seen) -> Callback:
         turns = seen.turns
-        interval_ns = intervals_of(array("q", [one.begin_ns for one in turns]))
         dispatch_ns = [one.dispatch_ns for one in turns if one.dispatch_ns is not None]
         cpu_ns = [round(one.cpu_ns) for one in turns if one.cpu_ns is not None]
-        period_ns = None
-        if seen.kind == "timer" and interval_ns is not None:
-            due_ns = [one.due_ns for one in turns if one.due_ns is not None]
-            period_ns = nominal_ns(due_ns, interval_ns.quantiles[SHARES.index(0.5)])
         return Callback(
             kind=seen.kind,
             node=self._nodes.get(seen.node or self._only_node(seen.process)),
             trigger=seen.trigger,
             subscription=self._subscriptions.get(-1 if seen.endpoint is None else seen.endpoint),
-            period_ns=period_ns,
+            period_ns=seen.period_ns,
             symbol="",
             process=seen.process,
             threads=tuple(sorted(seen.threads)),
@@ -195,7 +235,7 @@ class _Recorded:
             rate_hz=len(turns) * 1e9 / self._span_ns,
             wall_ns=distribution_of(array("q", [one.wall_ns for one in turns])),
             cpu_ns=distribution_of(array("q", cpu_ns)),
-            interval_ns=interval_ns,
+            interval_ns=seen.interval_ns,
             publishes=self._outputs(turns),
             dispatch_ns=distribution_of(array("q", dispatch_ns)),
         )

@@ -173,6 +173,25 @@ def test_a_timer_has_the_period_that_rcl_waits_for() -> None:
     assert timer.period_ns == 20_000 * US
 
 
+def test_a_timer_that_begins_to_publish_is_one_timer() -> None:
+    rows = []
+    for i in range(30):
+        due_us = 20_000 * i + 10_000
+        rows += wait(due_us - 5000, due_us + 40, (0, 0), ready=False, timeout_us=5000)
+        if i >= 10:
+            rows += publish(due_us + 100, TIMED, i)
+        if i % 10 == 9:
+            rows += publish(due_us + 200, LOG, i)
+        other_us = due_us + 7000  # another timer of the same period
+        rows += wait(due_us + 300, other_us + 40, (0, 0), ready=False, timeout_us=6700)
+        rows += publish(other_us + 100, FILTER_OUT, i)
+    rows.append(event(700_000, Kind.WAIT_BEGIN, NO_ENDPOINT))
+    timers = profiled(rows, until_us=700_000).callbacks
+    assert [(one.executions, one.period_ns) for one in timers] == [(30, 20_000 * US)] * 2
+    counts = [sorted(output.count or 0 for output in one.publishes) for one in timers]
+    assert sorted(counts) == [[3, 20], [30]]
+
+
 @pytest.mark.parametrize("period_ns", [33_333_333, 10_005_000, 2_500_000])
 def test_a_known_period_is_not_rounded(period_ns: int) -> None:
     due_ns = [(5 + number) * period_ns + number % 2 for number in range(50)]
