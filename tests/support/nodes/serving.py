@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import signal
 import threading
-import time
 from typing import Any
 
 from support import TIMEOUT_S, wait_until
@@ -50,23 +49,38 @@ def call(times: int) -> None:
 
 
 def count() -> None:
-    """Serve Fibonacci with endless feedback; succeed on request."""
-    from rclpy.action import ActionServer
+    """Serve Fibonacci with endless feedback; succeed on request, and let goals be canceled."""
+    from rclpy.action import ActionServer, CancelResponse
 
     told: list[int] = []
     signal.signal(signal.SIGUSR1, lambda number, _: told.append(number))
     kind = type_of(FIBONACCI)
+    goals: list[Any] = []
     with peer_node("counter") as node:
 
-        def execute(goal: Any) -> Any:
+        def accepted(goal: Any) -> None:
             announce("executing")
-            while not told:
+            goals.append(goal)
+
+        def go_on() -> None:
+            for goal in goals:
                 goal.publish_feedback(kind.Feedback(sequence=[0, 1]))
-                time.sleep(0.02)  # like an action that takes long
-            goal.succeed()
+            if goals and (told or goals[0].is_cancel_requested):
+                goals.pop(0).execute()
+
+        def end(goal: Any) -> Any:
+            if goal.is_cancel_requested:
+                goal.canceled()
+            else:
+                goal.succeed()
             return kind.Result(sequence=[0, 1, 1])
 
-        ActionServer(node, kind, "count", execute)
+        ActionServer(
+            *(node, kind, "count", end),
+            handle_accepted_callback=accepted,
+            cancel_callback=lambda _: CancelResponse.ACCEPT,
+        )
+        node.create_timer(0.02, go_on)
         for service in ("send_goal", "get_result"):  # as in `serve`
             name = f"/count/_action/{service}"
             wait_until(lambda name=name: node.count_clients(name), f"a client of {name}")
@@ -74,21 +88,29 @@ def count() -> None:
         spin_until(node, lambda: False, 1e6)
 
 
-def send_goal() -> None:
-    """Send a goal, and print its feedback and result."""
+def send_goal(cancels: bool = False) -> None:
+    """Send a goal, and print its feedback and result; cancel it first if asked to."""
     from rclpy.action import ActionClient
 
     kind = type_of(FIBONACCI)
     with peer_node("sender") as node:
         client = ActionClient(node, kind, "count")
         spin_until(node, client.server_is_ready)
-        sent = client.send_goal_async(
-            kind.Goal(order=3),
-            lambda message: announce(f"feedback {list(message.feedback.sequence)}"),
-        )
+        heard: list[Any] = []
+
+        def feedback(message: Any) -> None:
+            heard.append(message)
+            announce(f"feedback {list(message.feedback.sequence)}")
+
+        sent = client.send_goal_async(kind.Goal(order=3), feedback)
         spin_until(node, sent.done)
         announce(f"accepted {sent.result().accepted}")
         result = sent.result().get_result_async()
         announce("asked for the result")
+        if cancels:
+            spin_until(node, lambda: heard)
+            asked = sent.result().cancel_goal_async()
+            spin_until(node, asked.done)
+            announce(f"canceling {len(asked.result().goals_canceling)}")
         spin_until(node, result.done)
         announce(f"status {result.result().status} {list(result.result().result.sequence)}")

@@ -58,15 +58,17 @@ def route(port: int) -> None:
     """Be the router."""
     router = session("router", listen__endpoints=[locator(port)])
     announce("routing")
-    _stay()
+    stay()
     router.close()
 
 
-def _stay() -> None:
+def stay() -> None:
+    """Keep this process until it is ended."""
     threading.Event().wait()
 
 
-def _sdk(port: int, domain: int) -> tuple[Any, dict[str, Any]]:
+def sdk_of(port: int, domain: int) -> tuple[Any, dict[str, Any]]:
+    """Return the SDK, and where its ends connect to."""
     os.environ["HOME"] = tempfile.mkdtemp()  # no cache of definitions
     import zenoh_ros2_sdk
 
@@ -83,7 +85,7 @@ def sdk_say(
     type_name: str = "std_msgs/msg/String",
 ) -> None:
     """Publish numbers, as texts or as they are; without a count, forever."""
-    sdk, to = _sdk(port, domain)
+    sdk, to = sdk_of(port, domain)
     publisher = sdk.ROS2Publisher(
         topic, type_name, msg_definition=DEFINITIONS[type_name], node_name="speaker", qos=qos, **to
     )
@@ -96,14 +98,14 @@ def sdk_say(
         number += 1
         time.sleep(period_s)
     announce("said")
-    _stay()
+    stay()
 
 
 def sdk_hear(
     port: int, domain: int, topic: str, qos: str | None = None, until: int | None = None
 ) -> None:
     """Print texts; with a number, only how many came once its text has come."""
-    sdk, to = _sdk(port, domain)
+    sdk, to = sdk_of(port, domain)
     texts: list[str] = []
 
     def heard(message: Any) -> None:
@@ -122,19 +124,19 @@ def sdk_hear(
         **to,
     )
     announce("listening")
-    _stay()
+    stay()
     kept.close()
 
 
 def sdk_serve(port: int, domain: int, answers: bool) -> None:
     """Serve SetBool, or never answer."""
-    sdk, to = _sdk(port, domain)
+    sdk, to = sdk_of(port, domain)
     request, response = DEFINITIONS[SET_BOOL]
 
     def answer(asked: Any) -> Any:
         announce("asked")
         if not answers:
-            _stay()
+            stay()
         return server.response_msg_class(success=asked.data, message="served")
 
     server = sdk.ROS2ServiceServer(
@@ -145,12 +147,12 @@ def sdk_serve(port: int, domain: int, answers: bool) -> None:
         **to,
     )
     announce("serving")
-    _stay()
+    stay()
 
 
 def sdk_call(port: int, domain: int, times: int) -> None:
     """Call SetBool, one call after the other, once there is a server."""
-    sdk, to = _sdk(port, domain)
+    sdk, to = sdk_of(port, domain)
     request, response = DEFINITIONS[SET_BOOL]
     client = sdk.ROS2ServiceClient(
         *("/lamp", SET_BOOL),
@@ -164,7 +166,7 @@ def sdk_call(port: int, domain: int, times: int) -> None:
     for number in range(times):
         answer = client.call(data=number % 2 == 0)
         announce(f"answer {answer.success} {answer.message}")
-    _stay()
+    stay()
 
 
 def ask(
@@ -173,7 +175,7 @@ def ask(
     """Call a service once it answers, with keys that the SDK makes; print the response."""
     from rclpy.serialization import deserialize_message, serialize_message
 
-    sdk, _ = _sdk(port, domain)
+    sdk, _ = sdk_of(port, domain)
     kind = type_of(type_name)
     name = sdk.utils.ros2_to_dds_type(type_name)
     key = sdk.keyexpr.topic_keyexpr(domain, service, name, type_hash)
@@ -184,12 +186,12 @@ def ask(
             if reply.ok is not None:
                 answer = deserialize_message(reply.ok.payload.to_bytes(), kind.Response)
                 announce(f"answer {answer}")
-                _stay()
+                stay()
 
 
 def sdk_list(port: int, domain: int) -> None:
     """Print topics and services whenever they change."""
-    sdk, to = _sdk(port, domain)
+    sdk, to = sdk_of(port, domain)
     shown = None
     while True:
         topics = sdk.get_topic_names_and_types(**to)
@@ -249,7 +251,7 @@ def put_latched(port: int, key: str, *texts: str) -> None:
         message = b"\0\1\0\0" + struct.pack("<I", len(data)) + data
         publisher.put(message, attachment=_attachment("new", number))
     announce("said")
-    _stay()
+    stay()
     del tokens
 
 
@@ -264,7 +266,7 @@ def hear_latched(port: int, key: str, depth: int) -> None:
         recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
         subscriber_detection=True,
     )
-    _stay()
+    stay()
     kept.undeclare()
 
 
@@ -273,5 +275,5 @@ def token(port: int, text: str) -> None:
     peer = peer_session(port)
     kept = peer.liveliness().declare_token(text)
     announce("declared")
-    _stay()
+    stay()
     del kept
