@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 from rmw_manycore_bridge.limits import Gaps
 from rmw_manycore_bridge.outside import types
@@ -16,12 +15,7 @@ from rmw_manycore_bridge.topic import BATCH, Topic
 from rmw_manycore_bridge.topic_role import TopicRole
 from rmw_manycore_py.native import _transport
 
-
-class _Publisher(NamedTuple):
-    """Publisher on the platform; one that stands for another host's has the name of its node."""
-
-    entity: _transport.Publisher
-    node: _transport.Node | None
+_OWN = b""
 
 
 class InwardTopic(Topic):
@@ -29,7 +23,9 @@ class InwardTopic(Topic):
 
     def __init__(self, sides: Sides, role: TopicRole) -> None:
         super().__init__(sides, role)
-        self._publishers: dict[bytes, _Publisher] = {}  # by gid outside
+        # By gid outside; other messages are the bridge's own, which has an empty one.
+        self._publishers: dict[bytes, _transport.Publisher] = {}
+        self._unnamed: set[bytes] = set()  # gids that are not shown outside
         self._subscription: Subscription | None = None
         self._gaps = Gaps(sides.row)
 
@@ -38,7 +34,7 @@ class InwardTopic(Topic):
         route = self._sides.route
         listeners = self._sides.inside.subscriptions(route.inside)
         publishers = self._sides.outside.publishers(route, bool(listeners) or route.eager)
-        fitting = [p for p in publishers if p.type == route.type]
+        fitting = self._fitting(publishers)
         if not fitting:
             self.finish()
             if publishers:
@@ -64,35 +60,45 @@ class InwardTopic(Topic):
             self._gaps = Gaps(self._sides.row)  # untaken messages are not lost
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
+    def _fitting(self, publishers: Sequence[Endpoint]) -> list[Endpoint]:
+        return [p for p in publishers if p.type == self._sides.route.type]
+
     def _appear(self, publishers: Sequence[Endpoint]) -> bool:
         """Publish on the platform, on nodes of the same names where publishers have them."""
-        assert self._offer is not None
         named = {one.gid: one for one in publishers if one.node}
-        wanted = named or {b"": Endpoint(self._sides.route.type, self._offer)}
-        for gid in self._publishers.keys() - wanted.keys():
+        for gid in self._publishers.keys() - named.keys() - {_OWN}:
             del self._publishers[gid]
+        self._unnamed.clear()
         try:
-            for gid in wanted.keys() - self._publishers.keys():
-                self._publishers[gid] = self._made(wanted[gid])
+            for gid in named.keys() - self._publishers.keys():
+                self._publishers[gid] = self._stand_in(named[gid])
+            if not named:
+                self._own_publisher()
         except _transport.PlatformError as error:
             self.close()
             self._sides.fail(str(error))
             return False
         return True
 
-    def _made(self, publisher: Endpoint) -> _Publisher:
+    def _stand_in(self, publisher: Endpoint) -> _transport.Publisher:
         route, inside = self._sides.route, self._sides.inside
-        node = inside.stand_in(publisher.node) if publisher.node else None
-        type_hash = types.hash_of(route.type)
-        entity = inside.process.publisher(
+        return inside.process.publisher(
             *(route.inside, route.type, publisher.qos),
-            type_hash=type_hash,
-            node=node,
+            type_hash=types.hash_of(route.type),
+            node=inside.stand_in(publisher.node),
             gid=publisher.source or None,
         )
-        if node is None:  # others have gids of other platforms
-            self._sides.row.add_gid(entity.gid)
-        return _Publisher(entity, node)
+
+    def _own_publisher(self) -> _transport.Publisher:
+        found = self._publishers.get(_OWN)
+        if found is None:
+            assert self._offer is not None
+            route, process = self._sides.route, self._sides.inside.process
+            type_hash = types.hash_of(route.type)
+            found = process.publisher(route.inside, route.type, self._offer, type_hash=type_hash)
+            self._publishers[_OWN] = found
+            self._sides.row.add_gid(found.gid)  # others have gids of other platforms
+        return found
 
     def _listen(self, depth: int) -> None:
         if self._subscription is not None:
@@ -127,8 +133,18 @@ class InwardTopic(Topic):
 
     def send(self, address: int, size: int, sent_ns: int, publisher: bytes, _: int) -> None:
         """Publish inside with the source timestamp of the publisher outside."""
-        found = self._publishers.get(publisher) or next(iter(self._publishers.values()))
-        found.entity.publish_from(address, size, sent_ns)
+        found = self._publishers.get(publisher) or self._late(publisher)
+        found.publish_from(address, size, sent_ns)
+
+    def _late(self, publisher: bytes) -> _transport.Publisher:
+        """Return the publisher here of one that is not known yet, or that has ended."""
+        outside, route = self._sides.outside, self._sides.route
+        if outside.links_platforms and publisher not in self._unnamed:
+            for one in self._fitting(outside.publishers(route, True)):
+                if one.gid == publisher:
+                    return self._publishers.setdefault(publisher, self._stand_in(one))
+            self._unnamed.add(publisher)
+        return self._own_publisher()
 
     def begin_after(self, last: Mapping[bytes, int]) -> None:
         """Count gaps from the sequence numbers of the previous lane."""
@@ -160,3 +176,4 @@ class InwardTopic(Topic):
         self.stop_listening()
         self._offer = None
         self._publishers.clear()
+        self._unnamed.clear()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 
 from rmw_manycore_bridge.outside import types
 from rmw_manycore_bridge.outside.interface import Publisher
@@ -12,7 +13,7 @@ from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_bridge.topic import BATCH, TURN_S, Topic
 from rmw_manycore_bridge.topic_role import STEP_S, TopicRole
 from rmw_manycore_py.native import _transport
-from rmw_manycore_py.native._transport import Qos
+from rmw_manycore_py.native._transport import EndpointInfo, Qos
 
 _PLATFORM_BYTES = 8  # of a gid, which are the same for all endpoints of a platform
 
@@ -25,12 +26,13 @@ class OutwardTopic(Topic):
         self._publisher: Publisher | None = None
         self._subscription: _transport.Subscription | None = None
         self._lost = 0
+        self._shown: set[bytes] = set()  # gids of publishers that were there when looked for
 
     def match(self) -> None:
         """Publish outside while publishers exist; subscribe inside while others do outside."""
         route, inside = self._sides.route, self._sides.inside
         publishers = inside.publishers(route.inside)
-        fitting = [p for p in publishers if p.type == route.type]
+        fitting = self._fitting(publishers)
         if not fitting:
             self._leave()
             if publishers:
@@ -47,13 +49,20 @@ class OutwardTopic(Topic):
         if self._offer is None or not satisfies(self._offer, offer):
             self.finish()
             self._appear(offer)
-        assert self._publisher is not None
-        self._publisher.show(fitting)
+        self._show(fitting)
         if self._is_wanted(offer):
             self._listen()
         else:
             self.stop_listening()
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
+
+    def _fitting(self, publishers: Sequence[EndpointInfo]) -> list[EndpointInfo]:
+        return [p for p in publishers if p.type == self._sides.route.type]
+
+    def _show(self, publishers: Sequence[EndpointInfo]) -> None:
+        assert self._publisher is not None
+        self._publisher.show(publishers)
+        self._shown = {one.gid for one in publishers}
 
     def _is_wanted(self, offer: Qos) -> bool:
         kept = offer.durability == "transient_local"
@@ -129,8 +138,13 @@ class OutwardTopic(Topic):
         return super().is_own(publisher)
 
     def send(self, address: int, size: int, sent_ns: int, publisher: bytes, number: int) -> None:
-        """Publish outside."""
+        """Publish outside, where its publisher is shown first."""
         assert self._publisher is not None
+        if publisher not in self._shown:
+            present = self._fitting(self._sides.inside.publishers(self._sides.route.inside))
+            if any(one.gid == publisher for one in present):
+                self._show(present)
+            self._shown.add(publisher)  # or it has ended
         self._publisher.publish(address, size, sent_ns, publisher, number)
         if self._subscription is not None:
             self._subscription.note_bridged()

@@ -93,6 +93,16 @@ def test_a_publisher_that_stands_for_one_of_another_host(configured: str) -> Non
             member.publisher("/t", STRING, Qos(), gid=b"short")
 
 
+def test_a_node_stays_while_it_has_a_publisher(configured: str) -> None:
+    with Process(configured, label="member") as member:
+        node = member.node("told", "/")
+        publisher = member.publisher("/t", STRING, Qos(), node=node)
+        del node
+        assert [row.node_name for row in member.endpoints_of("/t")] == ["told"]
+        del publisher
+        assert [node.name for node in member.nodes()] == ["member"]
+
+
 def _check_publisher(row: EndpointInfo, gid: bytes, qos: Qos) -> None:
     assert (row.role, row.topic, row.type, row.type_hash) == ("topic", "/t", STRING, TYPE_HASH)
     assert (row.node_name, row.node_namespace, row.cluster) == ("member", "/", 2)

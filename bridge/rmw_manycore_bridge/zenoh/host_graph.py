@@ -44,7 +44,7 @@ class _Source:
 class HostPublisher(ZenohPublisher):
     """Publishes for the publishers of its host, each with a token, a gid and numbers.
 
-    Messages of a publisher that has ended or is not shown yet have the gid of this one.
+    The last messages of a publisher that has ended have the gid of this one.
     """
 
     def __init__(self, graph: Graph, token: Token, changed: Callable[[], None]) -> None:

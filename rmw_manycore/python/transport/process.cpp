@@ -213,7 +213,7 @@ void bind_process(nb::module_ & module) {
     .def(
       "publisher", &BoundProcess::publisher, nb::arg("topic"), nb::arg("type"), nb::arg("qos"),
       nb::arg("role") = "topic", nb::arg("type_hash") = "", nb::arg("node") = nb::none(),
-      nb::arg("gid") = nb::none())
+      nb::arg("gid") = nb::none(), nb::keep_alive<0, 7>())
     .def("node", &BoundProcess::node, nb::arg("name"), nb::arg("namespace"))
     .def("nodes", &BoundProcess::nodes)
     .def(
