@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 import click
+from typing_extensions import override
 
 _MAX_NUMBER = 1e12
 
@@ -21,3 +22,7 @@ class FiniteRange(click.FloatRange):
         if not abs(number) <= _MAX_NUMBER:
             self.fail(f"expected a number up to {_MAX_NUMBER:g}, found {value}.", param, context)
         return number
+
+    @override
+    def _describe_range(self) -> str:
+        return "" if self.min is self.max is None else super()._describe_range()
