@@ -80,7 +80,7 @@ _NODES = "NODE,.."
     within=(0.1, 10_000.0),
     default=20.0,
     metavar="S",
-    help="Time to search: seconds of a fast CPU, counted so that results do not depend on it.",
+    help="Search budget in seconds of a reference CPU; deterministic.",
 )
 @number_option(
     "--duration",
@@ -90,7 +90,9 @@ _NODES = "NODE,.."
     metavar="S",
     help="Simulated time of each mapping.",
 )
-@number_option("--seed", within=(0, 2**31 - 1), default=0, metavar="N", help="Of all chances.")
+@number_option(
+    "--seed", within=(0, 2**31 - 1), default=0, metavar="N", help="Seed of the random numbers."
+)
 @click.option("-o", "--output", type=OutputFile(), help="Mapfile to write.")
 @click.option(
     "--isolated-executor",
@@ -125,8 +127,8 @@ def command(
 ) -> None:
     """Advise which node belongs on which core.
 
-    For the nodes of MAPFILE, a solver finds mappings that keep all limits. The best of them in a
-    simulation of the profile is written. NODE is a name or a pattern. The new mapfile has the
+    For the nodes of MAPFILE, a solver finds mappings that satisfy all constraints. The best of them
+    in a simulation of the profile is written. NODE is a name or a pattern. The new mapfile has the
     comments of the old one. Names of files stay relative to it.
     """
     given: dict[ConstraintKind, tuple[str, ...]] = {

@@ -64,9 +64,9 @@ _EXAMPLES = examples(
 def command(
     mapfile: Path, directory: Path, with_figure: bool, compare: bool, as_json: bool
 ) -> None:
-    """Generate all files that MAPFILE implies.
+    """Generate topic table, launch scripts, parameters.
 
-    Topic table, launch scripts, parameter files and memory report.
+    And a report on the memory that the nodes of MAPFILE will take.
     """
     if compare and not with_figure:
         raise click.UsageError("--compare belongs to --report.")

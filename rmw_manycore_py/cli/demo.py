@@ -36,7 +36,10 @@ DEFAULT_DURATION_S = 10.0
 @duration_option(DEFAULT_DURATION_S)
 @click.option("--list", "as_list", is_flag=True, help="List the installed mapfiles and exit.")
 @click.option(
-    "--compare", "is_comparison", is_flag=True, help="Images through rclpy, beside Fast DDS."
+    "--compare",
+    "is_comparison",
+    is_flag=True,
+    help="Count images that arrive, here and with Fast DDS (2 min).",
 )
 @click.option(
     "--plot", "picture", type=OutputFile(".png", ".svg", ".pdf"), help="Draw what --compare found."

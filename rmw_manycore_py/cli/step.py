@@ -20,11 +20,10 @@ from rmw_manycore_py.ros.names import expand
 @click.option("--topic", default="", help="Go on until something is published on this topic.")
 @platform_option
 def command(for_s: float | None, topic: str, platform: str) -> None:
-    """Let some virtual time of a run pass.
+    """Advance virtual time, then pause.
 
-    Without options, up to when something is due next. Then time stands, as after `manycore pause`:
-    look at topics, parameters or a debugger as long as you like. With both options, until the first
-    of both.
+    Without options, to the next event. Then time stands, as after `manycore pause`: look at topics,
+    parameters or a debugger as long as you like. With both options, whichever comes first.
     """
     if for_s is not None and for_s > MAX_STEP_S:
         raise click.UsageError(f"--for: expected at most {MAX_STEP_S:g} s.")

@@ -37,10 +37,11 @@ from rmw_manycore_py.ros.domain import default_platform
 def command(
     mapfile: Path, detached: bool, joins: bool, nodes: tuple[str, ...], host: str | None
 ) -> None:
-    """Start the nodes of MAPFILE; -d: in the background.
+    """Start MAPFILE, or apply its changes to a run.
 
-    Without -d, same as `manycore run`. With -d, returns once all nodes are started; Ctrl-C before
-    that stops them again. Continue with ps, logs, restart, move, attach and stop.
+    Without -d, like `manycore run`, which has more options. With -d, returns once all nodes are
+    started; Ctrl-C before that stops them again. Continue with ps, logs, restart, move, attach and
+    stop.
 
     If MAPFILE runs already, -d applies what has changed in it: nodes that are new, or have another
     place or definition, are started there, and nodes that are gone are stopped. Others run on.

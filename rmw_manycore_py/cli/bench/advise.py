@@ -50,11 +50,11 @@ def command(
     output: Path,
     as_json: bool,
 ) -> None:
-    """Measure what an advised mapping is worth.
+    """Compare an advised mapping with random ones.
 
     Records a profile of MAPFILE, by default of autoware_reference, asks for advice, and runs the
     advised mapping, MAPFILE and random mappings. The first two also run beside a busy loop per
-    CPU. A second start goes on where the first ended.
+    CPU. An interrupted benchmark resumes from --output.
     """
     require(ORTOOLS)
     require(SIMPY)

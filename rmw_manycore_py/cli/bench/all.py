@@ -12,11 +12,15 @@ from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.idle import DEFAULT_NODES
 from rmw_manycore_py.cli.bench.options import bench_options
 from rmw_manycore_py.cli.bench.rmw import QUESTIONS
+from rmw_manycore_py.cli.common.options import examples
 
 QUICK_NODES = 20
 
 
-@click.command("all")
+@click.command(
+    "all",
+    epilog=examples("manycore bench all --quick", "manycore bench all -o build/results --plot"),
+)
 @bench_options
 def command(quick: bool, **options: Any) -> None:
     """Measure messages, start-up, idle nodes and memory.

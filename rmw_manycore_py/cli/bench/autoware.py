@@ -24,12 +24,12 @@ _EXAMPLES = examples(
 
 @click.command("autoware", epilog=_EXAMPLES)
 @click.argument("profile", type=click.Path(exists=True, dir_okay=False, path_type=Path))
-@duration_option(20.0, "Time to publish.")
+@duration_option(20.0, "Seconds to publish.")
 @bench_options
 def command(profile: Path, duration_s: float, **options: Any) -> None:
     """Run the skeleton of a large application.
 
-    PROFILE is of `manycore profile`, such as one of a trace of Autoware. Each node becomes a
+    PROFILE comes from `manycore profile`, such as one of a trace of Autoware. Each node becomes a
     native process with the node's publishers, subscriptions and parameter services, without its
     work. Messages come evenly at the profile's rates, with assumed sizes where it has none. Over
     a quarter, half and all nodes, beside Fast DDS: start, rest, descriptors, memory, tools,

@@ -10,9 +10,13 @@ import click
 from rmw_manycore_py.bench import bridge
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
+from rmw_manycore_py.cli.common.options import examples
 
 
-@click.command("bridge")
+@click.command(
+    "bridge",
+    epilog=examples("manycore bench bridge --quick", "manycore bench bridge --only 'another host'"),
+)
 @bench_options
 def command(**options: Any) -> None:
     """Measure the bridge.

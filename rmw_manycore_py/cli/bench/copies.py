@@ -18,9 +18,10 @@ from rmw_manycore_py.bench import (
 )
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
+from rmw_manycore_py.cli.common.options import examples
 
 
-@click.command("copies")
+@click.command("copies", epilog=examples("manycore bench copies --quick"))
 @bench_options
 def command(**options: Any) -> None:
     """Measure large messages in rclpy.

@@ -10,9 +10,10 @@ import click
 from rmw_manycore_py.bench import linked_hosts
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
+from rmw_manycore_py.cli.common.options import examples
 
 
-@click.command("hosts")
+@click.command("hosts", epilog=examples("manycore bench hosts -o build/hosts"))
 @bench_options
 def command(**options: Any) -> None:
     """Measure two hosts of one platform.

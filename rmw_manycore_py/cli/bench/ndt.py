@@ -21,9 +21,13 @@ from rmw_manycore_py.bench.ndt import (
 )
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
+from rmw_manycore_py.cli.common.options import examples
 
 
-@click.command("ndt")
+@click.command(
+    "ndt",
+    epilog=examples("manycore bench ndt --quick", "manycore bench ndt --only node -o build/node"),
+)
 @click.option(
     "--pclomp",
     type=click.Path(exists=True, file_okay=False, path_type=Path),

@@ -57,7 +57,12 @@ def bench_options(body: Body) -> Body:
 def mapping_runs_options(*, min_mappings: int, repetitions: int) -> Callable[[Body], Body]:
     """Return a decorator that adds the options on random mappings and their runs."""
     options = [
-        number_option("--mappings", within=(min_mappings, None), default=20, help="Random ones."),
+        number_option(
+            "--mappings",
+            within=(min_mappings, None),
+            default=20,
+            help="Number of random mappings.",
+        ),
         number_option(
             "--repetitions", within=(1, None), default=repetitions, help="Runs of each mapping."
         ),
@@ -70,7 +75,7 @@ def mapping_runs_options(*, min_mappings: int, repetitions: int) -> Callable[[Bo
             "--output",
             required=True,
             type=click.Path(file_okay=False, path_type=Path),
-            help="Directory of profiles, mappings and runs; a second start goes on there.",
+            help="Directory of profiles, mappings and runs; an interrupted start resumes there.",
         ),
     ]
 

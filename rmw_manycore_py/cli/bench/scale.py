@@ -25,7 +25,7 @@ _EXAMPLES = examples(
 def command(**options: Any) -> None:
     """Measure many threads, endpoints and nodes.
 
-    What they cost each other, beside Fast DDS. Curves over the threads of a process that wait
+    How they slow each other down, beside Fast DDS. Curves over the threads of a process that wait
     by block, adaptive and spin; over composed rclpy nodes with each executor; over the
     endpoints of a topic and the messages that a publisher keeps; over nodes that follow /clock
     at 1 kHz; over clients of a service and of an action; and over nodes of a platform: start,

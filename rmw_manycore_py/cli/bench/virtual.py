@@ -51,10 +51,12 @@ MAX_DEVIATION = 0.02
 @click.option(
     "--profile",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="As of manycore run; without it, callbacks take no time.",
+    help="As in `manycore run`; without it, callbacks take no time.",
 )
-@click.option("--platform", "platform_name", default="host", metavar="NAME", help="As of run.")
-@number_option("--seed", within=(0, None), default=0, help="As of manycore run.")
+@click.option(
+    "--platform", "platform_name", default="host", metavar="NAME", help="As in `manycore run`."
+)
+@number_option("--seed", within=(0, None), default=0, help="As in `manycore run`.")
 @click.option(
     "--chains",
     "with_chains",
@@ -63,7 +65,7 @@ MAX_DEVIATION = 0.02
     "simulate.",
 )
 @click.option("--native", is_flag=True, help="Native nodes; for autoware_reference.")
-@click.option("--kill", "kills", multiple=True, metavar="NODE@S", help="As of manycore run.")
+@click.option("--kill", "kills", multiple=True, metavar="NODE@S", help="As in `manycore run`.")
 @json_option
 def command(
     mapfile: Path,

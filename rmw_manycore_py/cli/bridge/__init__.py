@@ -32,7 +32,7 @@ class _BridgeGroup(LazyGroup):
     cls=_BridgeGroup,
     commands_at=VERBS,
     until_ctrl_c=("run",),
-    epilog=examples("manycore bridge domain_bridge.yaml", "manycore bridge status"),
+    epilog=examples("manycore bridge run domain_bridge.yaml", "manycore bridge status"),
 )
 def command() -> None:
     """Bridge topics and services to other domains."""

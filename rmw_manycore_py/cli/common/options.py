@@ -33,6 +33,7 @@ def _complete_platforms(
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 platform_option = click.option(
     "--platform",
+    metavar="NAME",
     default=default_platform,
     callback=_checked,
     shell_complete=_complete_platforms,
@@ -41,6 +42,7 @@ platform_option = click.option(
 )
 any_platform_option = click.option(
     "--platform",
+    metavar="NAME",
     callback=_checked,
     shell_complete=_complete_platforms,
     help="Only the platform of this name.",
@@ -134,12 +136,21 @@ def listing_options(command: Command) -> Command:
 
 
 def number_option(
-    *names: str, within: tuple[float, float | None], default: float, **more: Any
+    *names: str,
+    within: tuple[float, float | None],
+    default: float,
+    metavar: str = "N",
+    **more: Any,
 ) -> Callable[[Command], Command]:
     """Return an option for a number within bounds; its help shows the default."""
     number_range: Any = click.IntRange if isinstance(default, int) else FiniteRange
     return click.option(
-        *names, type=number_range(*within), default=default, show_default=True, **more
+        *names,
+        type=number_range(*within),
+        default=default,
+        metavar=metavar,
+        show_default=True,
+        **more,
     )
 
 

@@ -35,7 +35,7 @@ def starting_options(command: Callable[..., Any]) -> Callable[..., Any]:
     join = click.option(
         "--join", "joins", is_flag=True, help="Add the nodes to a platform that is already running."
     )
-    host = click.option("--host", metavar="HOST", help="Start only the part of this host.")
+    host = click.option("--host", metavar="HOST", help="Start only HOST's part of MAPFILE.")
     return host(join(node(command)))
 
 

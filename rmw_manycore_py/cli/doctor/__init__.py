@@ -59,7 +59,7 @@ def command(
 ) -> None:
     """Check this machine and installation.
 
-    Name the cure of each fault. The exit status is 0 unless a check fails; warnings do not
+    Suggests a fix for each problem. The exit status is 0 unless a check fails; warnings do not
     count. A report contains no messages, no secrets, and neither user nor host name; sections
     that cannot be collected state the reason.
     """

@@ -30,10 +30,7 @@ from rmw_manycore_py.ros.names import is_hidden
 @discovery_options
 @platform_option
 def command(node: str | None, platform: str, as_json: bool, hidden: bool) -> None:
-    """Print the state of NODE, or of all nodes.
-
-    Of all lifecycle nodes, that is.
-    """
+    """Print the state of NODE or of all lifecycle nodes."""
     if node:
         names = [existing_lifecycle_node(platform, node)]
     else:

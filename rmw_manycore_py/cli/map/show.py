@@ -47,7 +47,7 @@ from rmw_manycore_py.routes.route import DIRECTIONS
 @click.option(
     "--profile",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Warn of the mapping's faults by this profile.",
+    help="Warn about problems that this profile reveals.",
 )
 @json_option
 def command(mapfile: Path, trace: Path | None, profile: Path | None, as_json: bool) -> None:

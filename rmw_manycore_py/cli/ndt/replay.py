@@ -50,6 +50,7 @@ KEPT_SHARE = 0.98  # of the wanted rate: less is reported
     "--rate",
     "rate_hz",
     type=FiniteRange(0.1, 1000.0),
+    metavar="N",
     help="Scans per second; default: by stamps.",
 )
 @click.option("--wait", "waits", is_flag=True, help="Wait for each answer before the next scan.")
@@ -59,7 +60,8 @@ KEPT_SHARE = 0.98  # of the wanted rate: less is reported
     type=click.Choice(["odometry", "velocity", "perturbed", "stack", "lost"]),
     default="odometry",
     show_default=True,
-    help="Guesses: closed loop with odometry or constant velocity; perturbed reference; or none.",
+    help="Guesses: closed loop with odometry or constant velocity; perturbed reference; stack: an "
+    "initial pose and the speed, for a stack on the platform; or none.",
 )
 @click.option(
     "--motion",
@@ -86,7 +88,7 @@ KEPT_SHARE = 0.98  # of the wanted rate: less is reported
     default=0.5,
     help="Voxel size in metres to downsample scans to; 0 sends all points.",
 )
-@click.option("--scans", type=click.IntRange(1), help="Play only the first N scans.")
+@click.option("--scans", type=click.IntRange(1), metavar="N", help="Play only the first N scans.")
 @number_option(
     "--deadline",
     "deadline_ms",

@@ -26,7 +26,7 @@ VERBS = {
     ),
 )
 def command() -> None:
-    """Describe an application apart from where it runs.
+    """Record, import and show application profiles.
 
     Callbacks with their execution times, triggers and publications.
     """

@@ -33,10 +33,7 @@ from rmw_manycore_py.profile.summary import summary_of
 )
 @json_option
 def command(profile: Path, busiest: int, as_json: bool) -> None:
-    """Show the counts of a profile.
-
-    Below are its busiest callbacks, with times in milliseconds.
-    """
+    """Summarise a profile; list its busiest callbacks."""
     loaded = load(profile)
     if as_json:
         print_json(summary_of(loaded))

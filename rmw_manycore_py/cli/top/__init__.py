@@ -45,7 +45,7 @@ _PLAIN_WIDTH = 1000  # no line breaks in pipes and files
 @number_option(
     "--period", "period_s", within=(0.1, None), default=1.0, help="Seconds between updates."
 )
-@click.option("--count", type=click.IntRange(1), help="Exit after N updates.")
+@click.option("--count", type=click.IntRange(1), metavar="N", help="Exit after N updates.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per update.")
 @click.option(
     "--nodes",

@@ -33,7 +33,7 @@ def command(
 ) -> None:
     """Print the rate of TOPIC once per second.
 
-    Only while messages arrive. Messages are deserialized only for --filter.
+    Prints nothing while no messages arrive. Messages are deserialized only for --filter.
 
     Waits until TOPIC exists; with TYPE, subscribes at once.
     """

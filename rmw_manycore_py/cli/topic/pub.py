@@ -65,7 +65,12 @@ KEEP_ALIVE_S = 0.1
 )
 @click.option("-1", "--once", is_flag=True, help="Publish one message and exit.")
 @click.option(
-    "-t", "--times", type=click.IntRange(0), default=0, help="Publish N messages and exit."
+    "-t",
+    "--times",
+    type=click.IntRange(0),
+    default=0,
+    metavar="N",
+    help="Publish N messages and exit.",
 )
 @number_option(
     "-p",
@@ -81,6 +86,7 @@ KEEP_ALIVE_S = 0.1
     "--wait-matching-subscriptions",
     "wanted",
     type=click.IntRange(0),
+    metavar="N",
     help="Wait for N matching subscriptions; default: 1 with --once and --times, else 0.",
 )
 @click.option(
