@@ -10,15 +10,15 @@ from dataclasses import dataclass
 from rmw_manycore_py.advice.problem import Clusters, Problem
 from rmw_manycore_py.process.scheduling import Scheduling
 
-# What a unit of the hot chain adds to its core in the eyes of others, in CPUs.
+# Extra load, in CPUs, that a hot-chain unit counts for when other units choose a core.
 _HOT_LOAD = 0.5
-# Above what scripts and drivers set by hand; the end of the chain comes before its begin.
+# Lowest priority of the hot chain, above what scripts and drivers set; it rises towards the end.
 _FIRST_PRIORITY = 10
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where a node of a mapfile runs; None: as without the key."""
+    """Where a node of a mapfile runs; None leaves the key out of the mapfile."""
 
     cluster: int
     core: int | None = None

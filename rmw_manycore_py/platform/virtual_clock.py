@@ -27,7 +27,7 @@ def announced(platform: str, page: str) -> Iterator[None]:
 
 
 def virtual_clock(platform: str) -> Callable[[], int] | None:
-    """Return what reads the virtual time of a platform [ns]; None if its time is the wall clock's.
+    """Return a function that reads the virtual time of a platform [ns]; None in wall time.
 
     It stands at the last time once the run is over.
     """

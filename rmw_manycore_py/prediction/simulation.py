@@ -36,8 +36,8 @@ from rmw_manycore_py.profile.model import Callback, Distribution
 from rmw_manycore_py.trace.events import Kind
 
 _SAMPLE_NS = 100e6
-_FEW = 0.02  # of a publisher's messages: those outside of callbacks are of its start
-_BURST = 0.1  # of the mean interval: the median of one that is not steady
+_FEW = 0.02  # up to this share, publications outside of callbacks belong to start-up
+_BURST = 0.1  # median-to-mean ratio of intervals below which a source is bursty
 _SHARED_SITE = Site(Core(1, 1))
 
 
@@ -104,7 +104,7 @@ class Simulation:
         return np.random.default_rng([self._seed, *keys])
 
     def run(self, duration_s: float) -> None:
-        """Run for some time; all messages are kept, so that looking for garbage finds none."""
+        """Run for `duration_s`, without garbage collection: all messages stay referenced."""
         was_enabled = gc.isenabled()
         gc.disable()
         try:
@@ -114,7 +114,7 @@ class Simulation:
                 gc.enable()
 
     def _start(self, source: Timer | Source, delay: float) -> None:
-        """Start what happens by itself.
+        """Start a timer or a source of external input.
 
         :param delay: in ns; of a timer: in periods.
         """

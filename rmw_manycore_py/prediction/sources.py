@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What happens by itself: timers, and what comes from outside of the simulated callbacks."""
+"""Event sources: timers and external input."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ class Timer:
 
 @dataclass(eq=False)
 class Source:
-    """Something that comes at intervals of the profile."""
+    """External input at intervals of the profile."""
 
     env: Environment
     intervals_ns: Blocks
     happen: Callable[[], None]
 
     def start(self, delay_ns: float) -> None:
-        """Come for the first time after a delay."""
+        """Schedule the first event after `delay_ns`."""
         after(self.env, delay_ns, self._come)
 
     def _come(self, _: object) -> None:

@@ -55,8 +55,8 @@ struct SearchHead {
   alignas(64) std::atomic<uint32_t> best;  ///< points of the best place so far
 };
 
-/// A search by branch and bound: quarters squares of places whose upper bound is high enough. What
-/// it finds does not depend on who does which part of the work, and when.
+/// A search by branch and bound: quarters squares of places whose upper bound is high enough. The
+/// result does not depend on how the work is split or timed.
 ///
 /// Of each tile of 4 by 4 places and a sixteenth of the directions the best place is kept. Squares
 /// are left out whose bound is below that of their tile, or below the kept share of the best one.

@@ -22,9 +22,9 @@ void CopyMover::run() {
   }
 }
 
-size_t CopyMover::receive(size_t most) {
+size_t CopyMover::receive(size_t max_count) {
   const size_t count =
-    requests_.receive(batch_.data(), most * sizeof(CopyRequest)) / sizeof(CopyRequest);
+    requests_.receive(batch_.data(), max_count * sizeof(CopyRequest)) / sizeof(CopyRequest);
   for (size_t i = 0; i < count; ++i) {
     handle(batch_[i]);
   }

@@ -13,13 +13,13 @@ class CopyMover {
 public:
   CopyMover(Registry & registry, uint32_t cluster);
 
-  /// For ever. Throws Error{system} when the pipe cannot be read.
+  /// Runs until the process ends. Throws Error{system} when the pipe cannot be read.
   void run();
 
 private:
   static constexpr size_t batch_size = 16;
 
-  size_t receive(size_t most);
+  size_t receive(size_t max_count);
   void handle(const CopyRequest & request) noexcept;
   /// False when the record was overwritten before it was copied, or meanwhile.
   bool copy(const CopyRequest & request, const Destination & to) const noexcept;

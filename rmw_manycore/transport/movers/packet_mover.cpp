@@ -28,8 +28,8 @@ void PacketMover::run() {
 
 /// Every packet is written whole and all have one size: what does not fit is a stranger's, and is
 /// taken for packets of no publisher.
-size_t PacketMover::receive(const Pipe & pipe, size_t most) {
-  const size_t count = pipe.receive(batch_.data(), most * sizeof(Packet)) / sizeof(Packet);
+size_t PacketMover::receive(const Pipe & pipe, size_t max_count) {
+  const size_t count = pipe.receive(batch_.data(), max_count * sizeof(Packet)) / sizeof(Packet);
   for (size_t i = 0; i < count; ++i) {
     handle(batch_[i]);
   }

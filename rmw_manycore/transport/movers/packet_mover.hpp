@@ -13,17 +13,18 @@ class PacketMover {
 public:
   PacketMover(Registry & registry, uint32_t cluster);
 
-  /// For ever. Throws Error{system} when the pipes cannot be read.
+  /// Runs until the process ends. Throws Error{system} when the pipes cannot be read.
   void run();
 
 private:
   static constexpr size_t batch_size = 16;
 
-  size_t receive(const Pipe & pipe, size_t most);
+  size_t receive(const Pipe & pipe, size_t max_count);
   void handle(const Packet & packet) noexcept;
   /// False when packets before it are missing.
   bool append(const Packet & packet, const Destination & to) const noexcept;
-  /// What a predecessor, killed, has left.
+  /// Handles what a killed predecessor left in the pipes, then gives up the records that it had
+  /// received in part.
   void recover();
 
   Registry & registry_;

@@ -17,8 +17,8 @@ void add(
     ++count.alive;
     return;
   }
-  // Before the assertion is loaded: if that is out of date, and found to have run out, the clock of
-  // the publisher, which reads it after its store, reports it too, and the publisher notifies.
+  // Read the clock before `asserted_ns`: if a stale value looks expired, the publisher, which reads
+  // its clock after storing, finds the expiry too, and notifies.
   const int64_t now_ns = qos_now_ns();
   const int64_t asserted_ns = publisher.asserted_ns.load(std::memory_order_seq_cst);
   if (asserted_ns <= ManualLiveliness::never) {

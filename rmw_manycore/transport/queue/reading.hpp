@@ -6,8 +6,8 @@
 namespace manycore {
 
 /// Encoding of SubscriptionHeader::reading: what a subscription is looking at, as a hint names it,
-/// so a claim needs no more than its hint. Records whose numbers have equal low bits are taken for
-/// it as well: they wait in vain, which does no harm.
+/// so a claim needs no more than its hint. Only the low bits of a number are stored, so other
+/// records with the same bits count as pinned, too; harmless.
 class Reading {
 public:
   static constexpr uint64_t nothing = 0;

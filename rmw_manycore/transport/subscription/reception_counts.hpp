@@ -24,7 +24,7 @@ public:
   /// Messages may be missing that no later message has revealed yet.
   void suspect_losses() noexcept { unsettled_ = true; }
   bool is_unsettled() const noexcept { return unsettled_; }
-  /// The same, or hints were displaced, for which `lost` may be too high until all is settled.
+  /// True if losses are suspected, or displaced hints make `lost` too high for now.
   bool needs_settling() const noexcept;
   /// Called when each message is accounted for, either as one of the `displaced` hints or as
   /// lost.

@@ -155,7 +155,7 @@ uint64_t Subscription::arrivals() const noexcept {
     try {
       impl.finder.resync_if_asked();
     } catch (const std::bad_alloc &) {
-      // A take reports it, or does it.
+      // Out of memory: the next take retries, or reports the error.
     }
   }
   return impl.finder.arrivals();

@@ -51,8 +51,8 @@ bool TopicDsmWriter::retire(Generation & old) {
     old.entry->first.store(0, std::memory_order_seq_cst);
   }
   readers_.refresh(start());
-  // A reader that looked for a record of a younger generation, closed since, may have arrived at
-  // this one. One that looks at the header only keeps none.
+  // A reader on its way to a record of a younger, closed generation may have reached this one. A
+  // header-only reader pins none.
   old.is_unread = !readers_.is_any_pinned(old.first, current_.first - 1);
   return old.is_unread;
 }
@@ -281,7 +281,7 @@ std::string TopicDsmWriter::message_text(uint64_t need_bytes) const {
   return "a message of " + std::to_string(need_bytes) + " bytes on '" + endpoint_.topic + "'";
 }
 
-/// Who keeps earlier sizes: a message is taken and let go of before its memory is free.
+/// Names what keeps old generations: messages not yet taken, or still being read.
 std::string TopicDsmWriter::holders_text() const {
   uint64_t bytes = 0;
   for (const Generation & old : old_) {

@@ -19,15 +19,14 @@ public:
   /// Throws Error{system}.
   TransferSender(Registry & registry, Cluster & own, EndpointEntry & publisher);
 
-  /// False when the subscriptions there have to look for themselves: the record is there
-  /// without an announcement, or given up already, or was dropped, and no record is under way after
-  /// which they look.
+  /// False if the subscriptions there need a resync. Then the record arrived without an
+  /// announcement, was given up, or was dropped with no record under way that makes them look.
   bool hand_over(const EmcosMessage & announcement, const Cluster & receiver) noexcept {
     return carrier_ == nullptr ? receiver.send(announcement) : transfer(announcement, receiver);
   }
 
-  /// Throws Error{timeout} when the last record was to be received in time and was not: it names
-  /// whether the record may still arrive.
+  /// Throws Error{timeout} if a synchronous record was not received in time; the text says whether
+  /// it may still arrive.
   void require_received() {
     if (late_.cluster != 0) {
       throw_late();

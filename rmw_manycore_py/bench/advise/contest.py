@@ -44,7 +44,7 @@ def _all(runs: Sequence[Figures], chain: str, name: str) -> list[float]:
 
 @dataclass(frozen=True)
 class Contest:
-    """What the advice is worth.
+    """Latency of the advised mapping, the mapfile's own and random ones.
 
     :ivar chain: that it was asked for.
     :ivar now: the mapfile as it is.

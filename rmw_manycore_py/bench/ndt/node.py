@@ -17,7 +17,7 @@ NAME = "node"
 LATENCY = "scan to pose, through the bridge"
 LOST = "scans without a pose"
 ERROR = "error of poses, whole node"
-EXECUTION = "execution_time of the node"  # of the whole way, the part that the node takes
+EXECUTION = "execution_time of the node"  # share of the end-to-end time spent in the node
 CPU = "CPU time of node and workers, of each scan played"
 LENGTH_M = 160.0  # 200 scans at 8 m/s
 LARGE_LENGTH_M = 40.0  # 50 scans of 200,000 points
@@ -26,7 +26,7 @@ LARGE_HZ = 20.0
 PRIORITY = 10
 BUSY_PER_CPU = 2
 TILE_M = 20.0
-SWAP_FACTOR = 2.0  # two runs of the same differ as much; a map built in the way takes ten times
+SWAP_FACTOR = 2.0  # runs differ by up to 2x; building a map inline costs 10x
 ALONE, LOADED, REAL_TIME = "alone", "beside load", "beside load, in real time"
 SWAPPED, SIZED, KILLED = "maps swapped", "200,000 points at 20 Hz", "killed once"
 

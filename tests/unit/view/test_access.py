@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Who is answered, and what failures of the server look like, through a real connection."""
+"""Which clients the view server accepts, and what its failures look like over a connection."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ def mapfile(nodes: dict[str, Any], **topics: str) -> dict[str, Any]:
 
 
 def moved(data: dict[str, Any], moves: dict[str, int]) -> dict[str, Any]:
-    """Return the mapfile as a user changes it who follows the advice."""
+    """Return the mapfile after applying the advice."""
     nodes = {
         name: {k: v for k, v in one.items() if name not in moves or k not in ("cluster", "core")}
         for name, one in data["nodes"].items()
