@@ -123,7 +123,7 @@ struct SteppedPublisher {
       {"published", [this] { return dsm->last.load() == 2; }, Outcome::lost},
       {"carried", [this] { return has_carried(); }, carried},
       {"handed over", [this] { return landing->handed.load() == 2; }, Outcome::arrives},
-      {"closed", [this] { return landing->closed.load() == 2; }, Outcome::arrives},
+      {"decided", [this] { return landing->decided.load() == 2; }, Outcome::arrives},
     };
   }
 

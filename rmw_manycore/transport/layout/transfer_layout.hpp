@@ -48,9 +48,9 @@ struct LandingHeader {
   std::atomic<uint32_t> incarnation;  ///< of that slot
 
   /// Written by the publisher, in this order. A record between the two was dropped. `handed` goes
-  /// back by one record if a mover was killed meanwhile; its closer stores `closed`, too.
+  /// back by one record if a mover was killed meanwhile; its closer stores `decided`, too.
   alignas(64) std::atomic<uint64_t> handed;  ///< highest number handed to the transfer
-  std::atomic<uint64_t> closed;              ///< highest number whose hand-over has ended
+  std::atomic<uint64_t> decided;             ///< highest number whose hand-over has ended
 
   /// Written by the thread that fills the landing: the data, its mark, then these in this order.
   alignas(64) std::atomic<uint64_t> arrived;  ///< highest number that is here

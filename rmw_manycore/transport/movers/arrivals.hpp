@@ -33,8 +33,8 @@ void note_arrival(
 /// The record was handed over and will not get there: has the readers look, which count it as lost.
 void note_loss(Registry & registry, const Destination & to, uint64_t number) noexcept;
 
-/// Records that were handed over before a mover started. Some may have been in the hands of its
-/// predecessor when that was killed: what the pipe does not have any more never arrives.
+/// Records that were handed over before a mover started. Its predecessor may have received some,
+/// and not copied them, when it was killed: what the pipe does not have any more never arrives.
 class HandedBefore {
 public:
   /// Of landings of topics transferred by `kind` that this mover fills: `in` a cluster, or `from`

@@ -49,8 +49,8 @@ void PacketMover::handle(const Packet & packet) noexcept {
   }
 }
 
-/// The first packet of a record ends the one before it, of which the publisher dropped the rest, or
-/// of which a killed mover had some in hand.
+/// The first packet of a record ends the one before it: the publisher dropped the rest, or a killed
+/// mover had received some, and not copied them.
 bool PacketMover::append(const Packet & packet, const Destination & to) const noexcept {
   LandingHeader & landing = to.landing.header();
   const uint64_t number = packet.announcement.number;

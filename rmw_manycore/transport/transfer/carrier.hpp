@@ -17,7 +17,7 @@ struct Parcel {
 };
 
 enum class Carried : uint8_t {
-  handed,       ///< it is there, or a thread of the platform has it in hand
+  handed,       ///< it is there, or a thread of the platform copies it
   unannounced,  ///< it is there, but the receive thread's pipe is full
   dropped,      ///< there was no room for it
   unconfirmed,  ///< synchronous: it was handed over, and has not arrived in time

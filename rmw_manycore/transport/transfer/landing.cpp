@@ -4,7 +4,7 @@
 namespace manycore {
 namespace {
 
-/// Never back: while a mover has a record in hand, the last subscription may leave, and the next
+/// Never back: while a mover copies a record, the last subscription may leave, and the next
 /// one begin with a later number.
 void raise(std::atomic<uint64_t> & highest, uint64_t number) noexcept {
   uint64_t known = highest.load(std::memory_order_relaxed);
@@ -47,14 +47,14 @@ uint8_t * Landing::find(const RecordPlace & place) const noexcept {
   return is_inside ? data_ + place.begin : nullptr;
 }
 
-/// Read against the order of the writers: `closed` and `done` are stored last. `closed` once more
+/// Read against the order of the writers: `decided` and `done` are stored last. `decided` once more
 /// in the end: a record that was dropped meanwhile is not reported, if another one was under way.
 bool Landing::is_settled(uint64_t published, uint64_t known) const noexcept {
-  const bool is_closed = header_->closed.load(std::memory_order_seq_cst) >= published;
+  const bool is_decided = header_->decided.load(std::memory_order_seq_cst) >= published;
   const uint64_t handed = header_->handed.load(std::memory_order_seq_cst);
   const bool is_done = header_->done.load(std::memory_order_seq_cst) >= handed;
-  return is_closed && is_done && arrived() <= known &&
-         header_->closed.load(std::memory_order_seq_cst) == published;
+  return is_decided && is_done && arrived() <= known &&
+         header_->decided.load(std::memory_order_seq_cst) == published;
 }
 
 /// Release: a reader that finds the mark finds the bytes.

@@ -32,7 +32,7 @@ void attach(
   LandingHeader & landing) noexcept {
   const uint64_t last = dsm.last.load(std::memory_order_seq_cst);
   for (std::atomic<uint64_t> * word :
-       {&landing.arrived, &landing.done, &landing.handed, &landing.closed}) {
+       {&landing.arrived, &landing.done, &landing.handed, &landing.decided}) {
     word->store(last, std::memory_order_seq_cst);
   }
   table.landings[receiver.id() - 1].store(

@@ -89,7 +89,7 @@ void end(Clusters & clusters, const Cluster & cluster, TopicDsmHeader & dsm) noe
       table->landings[id - 1].load() == 0 ? nullptr : clusters.find(id);
     const Landing landing = receiver == nullptr ? Landing() : Landing::of(cluster, dsm, *receiver);
     if (landing) {
-      landing.header().closed.store(dsm.last.load(), std::memory_order_seq_cst);
+      landing.header().decided.store(dsm.last.load(), std::memory_order_seq_cst);
     }
   }
 }

@@ -74,7 +74,7 @@ void TransferSender::note_dropped(uint32_t cluster) noexcept {
 
 /// A report wakes the whole cluster, so only the first of the drops in a row is reported. The
 /// others are found by the subscriptions after a record that is still under way. Dekker with the
-/// mover: `closed` was stored before `done` is loaded here, and a subscription looks at `closed`
+/// mover: `decided` was stored before `done` is loaded here, and a subscription looks at `decided`
 /// after the mover has stored `done`.
 bool TransferSender::is_told_of_drop(const LandingHeader & landing, uint32_t cluster) noexcept {
   const uint64_t bit = uint64_t{1} << (cluster - 1);
@@ -108,7 +108,7 @@ bool TransferSender::transfer(
   } else {
     dropping_ &= ~(uint64_t{1} << (receiver.id() - 1));
   }
-  header.closed.store(number_, std::memory_order_seq_cst);
+  header.decided.store(number_, std::memory_order_seq_cst);
   if (is_synchronous_ && carried != Carried::handed && Landing::of(own_, dsm_, receiver)) {
     note_late({receiver.id(), may_arrive});  // unless its last subscription has left meanwhile
   }

@@ -47,14 +47,14 @@ private:
   void begin(uint64_t number) noexcept;
   Carried carry(
     const EmcosMessage & announcement, const Landing & landing, const Cluster & receiver) noexcept;
-  /// False when a mover was killed meanwhile that may have had the record in hand.
+  /// False when a mover was killed meanwhile that may have received the record.
   bool note_handed(
     LandingHeader & landing, const std::atomic<uint64_t> & successors, uint64_t before) noexcept;
   void note_dropped(uint32_t cluster) noexcept;
   void note_late(const Late & late) noexcept;
   [[noreturn]] void throw_late();
   bool is_told_of_drop(const LandingHeader & landing, uint32_t cluster) noexcept;
-  /// True when the mover gave it up before `closed` was stored: readers looked too early.
+  /// True when the mover gave it up before `decided` was stored: readers looked too early.
   bool is_given_up(const Landing & landing) const noexcept;
 
   Registry & registry_;
