@@ -21,6 +21,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from rmw_manycore_py.native._transport import Platform
+from rmw_manycore_py.platform.monitor.graph import read_graph
+from rmw_manycore_py.platform.monitor.sample import QUEUED, take_sample
 from soak.actors import ACTORS, RENEW, breed_actors, publish_bursts
 from soak.growth import Record, grown
 from soak.holdings import Holdings, look
@@ -41,6 +43,9 @@ BIRTH_S = 0.1
 BURST_S = 10.0
 RECEIVE_THREAD_LIFE_S = 20.0
 LEAVING = 0.3  # share of the nodes that end by themselves; the others are killed
+# On a busy machine they have thousands of messages left to take, at a few hundred a second.
+DRAINING_S = 300.0
+FEW_MESSAGES = 20
 RESTING_BYTES = 4 << 20  # of SMEM: four times what the lasting nodes hold
 STOPPED = 0.1  # share of the killed that hang for a while before
 
@@ -98,8 +103,16 @@ class Soak:
             wait_until(self._is_at_rest, "only the nodes that stay are left")
         except AssertionError:
             raise AssertionError(self._left()) from None
+        wait_until(
+            lambda: max(self._queued()) < FEW_MESSAGES,
+            "the lasting subscriptions have taken what the gone nodes published",
+            DRAINING_S,
+        )
         self._renew_publishers()
-        wait_until(self._is_freed, "what the gone nodes held is freed")
+        try:
+            wait_until(self._is_freed, "what the gone nodes held is freed")
+        except AssertionError as error:
+            raise AssertionError(f"{error}; queued: {self._queued()}") from None
         self._load.assert_in_order()
         # On a busy machine the queues of the checking nodes may overflow; missing messages are
         # counted.
@@ -120,6 +133,13 @@ class Soak:
 
     def _is_freed(self) -> bool:
         return look(self._platform, self.lasting).smem_used_bytes < RESTING_BYTES
+
+    def _queued(self) -> list[int]:
+        """Return how many messages each subscription has not taken."""
+        with Platform(self._platform) as seen:
+            sample = take_sample(seen, read_graph(seen), {})
+        queued: list[int] = sample.counts[~sample.graph.is_publisher, QUEUED].tolist()
+        return queued
 
     def _lost(self) -> int:
         with Platform(self._platform) as seen:
