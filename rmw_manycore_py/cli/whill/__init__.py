@@ -7,7 +7,7 @@ import click
 
 from rmw_manycore_py.cli.common.group import LazyGroup
 
-VERBS = {verb: f"rmw_manycore_py.cli.whill.{verb}:command" for verb in ("course", "drive")}
+VERBS = {verb: f"rmw_manycore_py.cli.whill.{verb}:command" for verb in ("course", "drive", "sweep")}
 
 
 @click.group("whill", cls=LazyGroup, commands_at=VERBS)
