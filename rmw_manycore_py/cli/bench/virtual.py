@@ -111,7 +111,11 @@ def command(
             model = load(taken), platform_name, seed
             chains = [*compared_chains(found[0].trace, complete, *model, duration_s)]
     if as_json:
-        rows = {"runs": [*map(_row, found)], "chains": [*map(asdict, chains)]}
+        rows = {
+            "runs": [*map(_row, found)],
+            "chains": [*map(asdict, chains)],
+            "first_difference": _first_difference(found),
+        }
         print_json({"machine": machine_header(), **rows})
     else:
         _print(found, chains)
@@ -129,10 +133,8 @@ def _of_medians(profile: Path, directory: Path) -> Path:
 def _print(found: Sequence[VirtualRun], chains: Sequence[ComparedChain]) -> None:
     same = sum(one.digest == found[0].digest for one in found)
     echo(f"{same} of {len(found)} runs are the same")
-    for one in found:
-        if one.digest != found[0].digest:
-            echo(_first_difference(found[0], one))
-            break
+    if (difference := _first_difference(found)) is not None:
+        echo(f"first difference, {difference}")
     if not chains:
         return
     table = new_table("#virtual us", "#simulated us", "#deviation", "chain")
@@ -153,7 +155,10 @@ def _row(one: VirtualRun) -> dict[str, object]:
     }
 
 
-def _first_difference(first: VirtualRun, other: VirtualRun) -> str:
-    pairs = zip_longest(first.log, other.log, fillvalue="nothing")
-    ours, theirs = next(pair for pair in pairs if pair[0] != pair[1])
-    return f"first difference, {other.condition}: '{theirs}' instead of '{ours}'"
+def _first_difference(found: Sequence[VirtualRun]) -> str | None:
+    first = found[0]
+    for other in found:
+        for ours, theirs in zip_longest(first.log, other.log, fillvalue="nothing"):
+            if ours != theirs:
+                return f"{other.condition}: '{theirs}' instead of '{ours}'"
+    return None
