@@ -14,6 +14,7 @@ from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_bridge.topic import BATCH, Topic
 from rmw_manycore_bridge.topic_role import TopicRole
 from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native._transport import Qos
 
 _OWN = b""
 
@@ -49,8 +50,9 @@ class InwardTopic(Topic):
             return
         offer = common_offer(offers, route.qos)
         if self._offer is None or not satisfies(self._offer, offer):
-            self.finish()
-            self._offer = offer
+            self._renew(offer)
+            # Those whose messages were just forwarded may have appeared meanwhile.
+            fitting = self._fitting(self._sides.outside.publishers(route, True))
         if not self._appear(fitting):
             return
         if listeners or route.eager or offer.durability == "transient_local":
@@ -59,6 +61,13 @@ class InwardTopic(Topic):
             self.stop_listening()
             self._gaps = Gaps(self._sides.row)  # untaken messages are not lost
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
+
+    def _renew(self, offer: Qos) -> None:
+        """Forward unread messages, then go on with another QoS; what stands for others stays."""
+        self.take(self._depth)
+        self.stop_listening()
+        self._publishers.pop(_OWN, None)
+        self._offer = offer
 
     def _fitting(self, publishers: Sequence[Endpoint]) -> list[Endpoint]:
         return [p for p in publishers if p.type == self._sides.route.type]

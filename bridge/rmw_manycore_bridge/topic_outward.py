@@ -47,8 +47,9 @@ class OutwardTopic(Topic):
             return
         offer = common_offer(offers, route.qos)
         if self._offer is None or not satisfies(self._offer, offer):
-            self.finish()
-            self._appear(offer)
+            self._renew(offer)
+            # Those whose messages were just forwarded may have appeared meanwhile.
+            fitting = self._fitting(inside.publishers(route.inside))
         self._show(fitting)
         if self._is_wanted(offer):
             self._listen()
@@ -81,7 +82,12 @@ class OutwardTopic(Topic):
         else:
             self.due_s = time.monotonic() + STEP_S
 
-    def _appear(self, offer: Qos) -> None:
+    def _renew(self, offer: Qos) -> None:
+        """Forward unread messages, then publish with another QoS; what is shown outside stays."""
+        self.take(self._depth)
+        self.stop_listening()
+        if self._publisher is not None:
+            self._publisher.close()
         self._publisher = self._sides.outside.publish(self._sides.route, offer)
         self._sides.row.add_gid(self._publisher.gid)
         self._offer = offer
@@ -177,5 +183,6 @@ class OutwardTopic(Topic):
         """Leave both sides."""
         self.stop_listening()
         if self._publisher is not None:
+            self._show(())
             self._publisher.close()
         self._publisher = self._offer = None

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from functools import partial
 
 import zenoh
+from zenoh.handlers import Callback
 
 from rmw_manycore_bridge.zenoh.keys import Kind, Token, TokenError, graph_key, parse_token
 
@@ -65,8 +66,10 @@ class Graph:
         self._numbers = itertools.count()
         self._nodes: dict[str, StandIn] = {}
         self._enter(f"/{node}").enter()  # the bridge's own node stays
+        # In the thread that reads the link, so that a token is known before what follows it.
+        noted = Callback(self._noted, indirect=False)
         self._watch = session.liveliness().declare_subscriber(
-            graph_key(domain), self._noted, history=True
+            graph_key(domain), noted, history=True
         )
 
     def endpoints(self, kind: Kind, name: str | None = None) -> list[Token]:

@@ -17,7 +17,7 @@ from rmw_manycore_py.ros.names import full_node_name
 
 
 @dataclass
-class _Source:
+class Source:
     """A publisher of this host.
 
     :ivar sent: number of its last message on the link.
@@ -47,9 +47,15 @@ class HostPublisher(ZenohPublisher):
     The last messages of a publisher that has ended have the gid of this one.
     """
 
-    def __init__(self, graph: Graph, token: Token, changed: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        graph: Graph,
+        token: Token,
+        changed: Callable[[], None],
+        sources: dict[bytes, Source],
+    ) -> None:
         super().__init__(graph, token, changed)
-        self._sources: dict[bytes, _Source] = {}
+        self._sources = sources  # by gid; those of another one of the topic before
 
     def resume(self) -> None:
         """Go on after a time in which no other host subscribed, or was there."""
@@ -62,7 +68,7 @@ class HostPublisher(ZenohPublisher):
         for gid in self._sources.keys() - present.keys():
             self._hide(gid)
         for gid in present.keys() - self._sources.keys():
-            self._sources[gid] = _Source(self._graph.declare(self._token_of(present[gid])))
+            self._sources[gid] = Source(self._graph.declare(self._token_of(present[gid])))
 
     def _token_of(self, source: EndpointInfo) -> Token:
         own, node = self._token, full_node_name(source.node_namespace, source.node_name)
@@ -78,12 +84,6 @@ class HostPublisher(ZenohPublisher):
         if source is None:
             return super().identity(publisher, number)
         return source.declared.token.gid, source.next(number)
-
-    def close(self) -> None:
-        """Destroy it."""
-        for gid in list(self._sources):
-            self._hide(gid)
-        super().close()
 
 
 class OwnNodes(Mover):

@@ -11,7 +11,7 @@ import zenoh
 
 from rmw_manycore_bridge.outside.interface import Endpoint, Joining, Platform
 from rmw_manycore_bridge.zenoh.graph import LINK_NODE, Graph, report
-from rmw_manycore_bridge.zenoh.host_graph import HostPublisher, OtherNodes, OwnNodes
+from rmw_manycore_bridge.zenoh.host_graph import HostPublisher, OtherNodes, OwnNodes, Source
 from rmw_manycore_bridge.zenoh.outside import Zenoh
 from rmw_manycore_bridge.zenoh.session import open_connecting, open_listening
 from rmw_manycore_py.native._transport import Qos
@@ -31,6 +31,7 @@ class Hosts(Zenoh):
 
     def _open_session(self, joining: Joining) -> zenoh.Session:
         outside = joining.plan.outside
+        self._sources: dict[str, dict[bytes, Source]] = {}  # by topic and gid
         self._is_outward = joining.direction == "outward"
         if joining.direction == "outward":
             return open_connecting(outside.connect)
@@ -55,8 +56,9 @@ class Hosts(Zenoh):
 
     def publish(self, route: Route, qos: Qos) -> HostPublisher:
         """Create a publisher."""
+        sources = self._sources.setdefault(route.outside, {})
         token = self._token("MP", route, qos)
-        made = HostPublisher(self._graph, token, self._note_change)
+        made = HostPublisher(self._graph, token, self._note_change, sources)
         made.declare(self._session, self._key(route), qos)
         return made
 

@@ -35,6 +35,8 @@ _LINK: dict[str, Any] = {
     **_COMMON,
     "scouting/gossip/enabled": False,  # each host knows the addresses of the others
     "transport/shared_memory/enabled": False,
+    # One queue: messages arrive after the token of their publisher, and before it is withdrawn.
+    "transport/unicast/qos/enabled": False,
 }
 _TLS_FILES = tuple(
     f"transport/link/tls/{name}"
