@@ -8,8 +8,9 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from rmw_manycore_bridge.counters import (
+    NOTHING_LEFT,
     CounterFile,
-    LastNumbers,
+    Left,
     RouteKey,
     key_of,
     pattern_status_path,
@@ -48,10 +49,10 @@ class Pattern(Mover):
         sides: Sides,
         find: Find,
         make: Callable[[Sides], Mover],
-        before: Mapping[RouteKey, LastNumbers],  # forwarded by a killed process
+        before: Mapping[RouteKey, Left],  # forwarded by a killed process
     ) -> None:
         super().__init__(sides.fail)
-        self._plan, self._sides, self._passed_before = plan, sides, before
+        self._plan, self._sides, self._left = plan, sides, before
         self._find, self._make = find, make
         self._members: dict[str, _Member] = {}
         self._movers: list[Mover] = []  # of the members: visited in every turn
@@ -158,7 +159,7 @@ class Pattern(Mover):
     def _sides_of(self, route: Route, slot: int) -> Sides:
         file = CounterFile.create(self._path(slot), [route])
         (row,) = file.rows
-        row.inherit(self._passed_before.get(key_of(asdict(route)), {}))
+        row.inherit(self._left.get(key_of(asdict(route)), NOTHING_LEFT))
         return replace(self._sides, route=route, row=row, file=file)
 
     def _free_slot(self) -> int:

@@ -60,6 +60,7 @@ class InwardTopic(Topic):
         else:
             self.stop_listening()
             self._gaps = Gaps(self._sides.row)  # untaken messages are not lost
+            self._sides.row.rest()
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
     def _renew(self, offer: Qos) -> None:

@@ -55,6 +55,7 @@ class OutwardTopic(Topic):
             self._listen()
         else:
             self.stop_listening()
+            self._sides.row.rest()
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
     def _fitting(self, publishers: Sequence[EndpointInfo]) -> list[EndpointInfo]:

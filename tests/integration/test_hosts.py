@@ -14,8 +14,10 @@ from support import IS_MANYCORE, wait_until
 from support.nodes.parted import HEARD, HOSTS, Parted
 from support.nodes.serving import call, count, send_goal, serve
 from support.nodes.speakers import (
+    count_as_many,
     flood,
     hear,
+    hear_counters,
     hear_gids,
     say,
     say_as,
@@ -217,6 +219,29 @@ def test_a_killed_link_process(hosts) -> None:
     runs["b"].wait_for(HEARD)
     wait_until(lambda: hosts.gids("b", "/chatter") == before, "the publisher is there again")
     assert hosts.row("b", "inward", "/chatter")["repeated"] == 0
+
+
+def test_a_killed_inward_process_with_many_publishers(hosts) -> None:
+    """Nothing comes twice; what is missing is lost, and counted, but what was just passed on."""
+    runs = hosts.run_all()
+    hearer = hosts.node("b", hear_counters, "/counted", 40)
+    hearer.wait_for("^listening$")
+    hosts.node("a", count_as_many, 40, "/counted")
+    hearer.wait_for("^heard all$")
+    hearer.wait_for("^heard all$")
+    rows = [hosts.row("a", "outward", "/counted"), hosts.row("b", "inward", "/counted")]
+    runs["b"].skip_output()
+    os.kill(rows[1]["pid"], signal.SIGKILL)
+    runs["b"].wait_for("connected to another host")
+    hearer.skip_output()
+    for _ in range(2):
+        hearer.wait_for("^heard all$")
+    hearer.signal(signal.SIGUSR1)
+    missing, lost = map(int, hearer.wait_for(r"^missing (\d+) lost (\d+)$").groups())
+    rows.append(hosts.row("b", "inward", "/counted"))
+    assert rows[-1]["pid"] != rows[1]["pid"]
+    lost += sum(row["lost"] for row in rows[1:]) + hosts.row("a", "outward", "/counted")["lost"]
+    assert 0 < missing <= lost + 1
 
 
 def test_a_clock_that_differs(hosts) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import signal
 import struct
 import time
 from typing import Any
@@ -141,6 +142,57 @@ def hear_gids(topic: str, count: int) -> None:
                     found.add(text)
             process.wait(seen, 1.0)
         announce(f"heard {' and '.join(sorted(found))} from their gids")
+        heard.close()
+
+
+def count_as_many(count: int, topic: str) -> None:
+    """Publish the numbers from 0, each with the name of its node, on several nodes."""
+    from rmw_manycore_py.native import _transport
+
+    with _transport.Process(os.environ["MANYCORE_PLATFORM"], label="counters") as process:
+        nodes = {
+            f"counter{number}": process.node(f"counter{number}", "/") for number in range(count)
+        }
+        publishers = {
+            name: process.publisher(topic, STRING, _transport.Qos(depth=1000), node=node)
+            for name, node in nodes.items()
+        }
+        for number in itertools.count():
+            for name, publisher in publishers.items():
+                publisher.publish(_text(f"{name} {number}"))
+            process.wait(process.epoch(), 0.1)
+
+
+def hear_counters(topic: str, count: int) -> None:
+    """Print when all counters have been heard anew, and on SIGUSR1 how many numbers are missing.
+
+    No number is heard twice.
+    """
+    from rmw_manycore_py.native import _transport
+
+    asked: list[int] = []
+    signal.signal(signal.SIGUSR1, lambda number, _: asked.append(number))
+    with _transport.Process(os.environ["MANYCORE_PLATFORM"], label="counters_hearer") as process:
+        heard = process.subscription(topic, STRING, _transport.Qos(depth=10_000))
+        announce("listening")
+        last: dict[str, int] = {}
+        anew: set[str] = set()
+        missing = 0
+        while not asked:
+            seen = process.epoch()
+            while claim := heard.claim():
+                name, number = claim.data[8:-1].decode().split()
+                claim.release()
+                before = last.get(name, int(number) - 1)
+                assert int(number) > before
+                missing += int(number) - before - 1
+                last[name] = int(number)
+                anew.add(name)
+            if len(anew) == count:
+                announce("heard all")
+                anew.clear()
+            process.wait(seen, 0.1)
+        announce(f"missing {missing} lost {heard.lost()}")
         heard.close()
 
 
