@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from soak.growth import Record, grown
 from soak.holdings import Holdings, look
-from soak.keepers import TOLD, keep, publish_kept
+from soak.keepers import GO_ON, REST, TOLD, keep, publish_kept
 from soak.soak import programs_on
 from support import wait_until
 from support.processes.commands import peer_command
@@ -31,13 +31,15 @@ LIFE_S = 0.5  # mean time between two kills
 WRONG = ("torn", "foreign", "Traceback")
 
 Start = Callable[..., Program]
-Role = tuple[Callable[[str], None], str, int]  # what it runs, its topic, its number
-PUBLISHER: Role = (publish_kept, "shared", 0)
-ROLES: list[Role] = [
-    (publish_kept, "alone", 0),
-    (keep, "alone", 0),
+Role = tuple[Callable[..., None], tuple[str, ...]]  # what it runs, its topic and more
+PUBLISHER: Role = (publish_kept, ("shared",))
+LASTING: Role = (keep, ("shared", "read_only"))
+VICTIMS: list[Role] = [
+    (publish_kept, ("alone",)),
+    (keep, ("alone", "sole")),
     PUBLISHER,
-    (keep, "shared", 0),
+    (keep, ("shared", "sole")),
+    LASTING,  # a second one
 ]
 
 
@@ -47,7 +49,7 @@ class Holds:
     def __init__(self, start: Start, platform: str) -> None:
         self._start = start
         self._platform = platform
-        self._lasting = self._started((keep, "shared", 1))
+        self._lasting = self._started(LASTING)
         self._own_endpoints = self._look().endpoints
         self._victims: dict[Role, Program] = {}
         self._takes_of_dead = 0
@@ -63,22 +65,22 @@ class Holds:
 
     def churn(self, takes: int) -> None:
         """Start and kill until all readers together have taken that many more messages."""
+        self._tell(GO_ON)
         end = self.takes + takes
         while self.takes < end:
-            for role in ROLES:
+            for role in VICTIMS:
                 if role not in self._victims:
                     self._victims[role] = self._started(role)
             time.sleep(random.uniform(0, 2 * LIFE_S))
             for program in (self._lasting, *self._victims.values()):
                 _raise_if_ended(program)
-            self._kill(random.choice(ROLES))
+            self._kill(random.choice(VICTIMS))
 
     def rest(self) -> Holdings:
         """End all but the lasting reader, and return what is held then."""
         for role in list(self._victims):
             self._kill(role)
-        self._lasting.say("rest")
-        self._lasting.wait_for("rests")
+        self._tell(REST)
         _raise_if_wrong(self._lasting)
         wait_until(self._is_alone, "what the killed held is reclaimed")
         return self._look()
@@ -90,6 +92,11 @@ class Holds:
         wait_until(lambda: _takes(self._lasting) > before, f"messages come from cluster {cluster}")
         self._kill(PUBLISHER)
 
+    def _tell(self, command: str) -> None:
+        """Tell the lasting reader to keep messages or none."""
+        self._lasting.say(command)
+        self._lasting.wait_for(command)
+
     def _look(self) -> Holdings:
         return look(self._platform, [self._lasting.pid])
 
@@ -98,9 +105,9 @@ class Holds:
         return held.process_slots == 1 and held.endpoints == self._own_endpoints
 
     def _started(self, role: Role, cluster: int | None = None) -> Program:
-        function, topic, _ = role
+        function, arguments = role
         place = cluster or random.randint(1, CLUSTERS)
-        program = self._start(peer_command(function, topic), place)
+        program = self._start(peer_command(function, *arguments), place)
         program.wait_for("works")
         return program
 

@@ -10,20 +10,20 @@ import pickle
 import random
 import sys
 import threading
-import zlib
 from typing import Any
 
-import numpy as np
 import rclpy
 from std_msgs.msg import UInt8MultiArray
 
-from support.nodes.payload import HEADER, make_message, read_message
+from support.nodes.payload import HEADER, make_bytes, make_message, read_message
 from support.nodes.ros import announce, peer_node
 
 DEPTH = 10
-SMALLEST_BYTES, LARGEST_BYTES = 64 << 10, 256 << 10
+SMALLEST_BYTES, LARGEST_BYTES = 64 << 10, 1 << 20
+SIZES_SHAPE = 3  # of a Pareto distribution: mostly small ones, for many takes
 MAX_KEPT = 20  # more than may be held, so that some are copies
 TOLD = 100  # takes
+REST, GO_ON = "rest", "go on"  # commands, and the answers to them
 FORKED, COPIED, CHANGED, KEPT = 0.002, 0.02, 0.3, 0.6  # shares of the messages
 
 
@@ -35,29 +35,38 @@ def publish_kept(topic: str) -> None:
         number = 0
         while True:
             number += 1
-            size_bytes = random.randrange(SMALLEST_BYTES, LARGEST_BYTES)
-            publisher.publish(make_message(os.getpid(), number, size_bytes))
-            rclpy.spin_once(node, timeout_sec=0)
+            size_bytes = int(SMALLEST_BYTES * random.paretovariate(SIZES_SHAPE))
+            message = make_message(os.getpid(), number, min(size_bytes, LARGEST_BYTES))
+            publisher.publish(message)
 
 
 class Kept:
-    """A message and the checksum of what it must hold."""
+    """A message, with the writer and number that it must hold."""
 
     def __init__(self, message: UInt8MultiArray) -> None:
         self._message = message
-        self._sum = zlib.crc32(memoryview(message.data))
+        self._expected = _read(message)
 
     def change(self) -> None:
         """Write into all bytes, which others must not see."""
-        values = np.frombuffer(self._message.data, np.uint8)
-        if values.flags.writeable:
-            np.bitwise_not(values, out=values)
-            self._sum = zlib.crc32(values)
+        values = memoryview(self._message.data)
+        if not values.readonly:
+            self._expected = (os.getpid(), random.getrandbits(32))
+            values[:] = make_bytes(*self._expected, len(values) - HEADER.size)
 
     def check(self) -> None:
         """Report foreign bytes."""
-        if zlib.crc32(memoryview(self._message.data)) != self._sum:
-            announce(f"foreign: {HEADER.unpack_from(self._message.data)}")
+        if (found := _read(self._message)) != self._expected:
+            announce(f"foreign: {found} instead of {self._expected}")
+
+
+def _read(message: UInt8MultiArray) -> tuple[int, int] | None:
+    """Return writer and number of a message; report it if it is torn."""
+    try:
+        return read_message(message)
+    except ValueError as error:
+        announce(str(error))
+        return None
 
 
 class Keeper:
@@ -66,15 +75,12 @@ class Keeper:
     def __init__(self) -> None:
         self._kept: list[Kept] = []
         self._takes = 0
-        self.rests = threading.Event()
+        self._rests = False
 
     def take(self, message: UInt8MultiArray) -> None:
         """Handle a message."""
-        try:
-            read_message(message)
-        except ValueError as error:
-            announce(str(error))
-        self._act(message)
+        if not self._rests:
+            self._act(message)
         self._takes += 1
         if self._takes % TOLD == 0:
             announce("took")
@@ -84,10 +90,12 @@ class Keeper:
         for one in self._kept:
             one.check()
 
-    def drop_all(self) -> None:
-        """Check and drop all messages."""
+    def obey(self, command: str) -> None:
+        """Check and drop all messages, and keep none until told to."""
         self.look()
         self._kept.clear()
+        self._rests = command == REST
+        announce(command)
 
     def _act(self, message: UInt8MultiArray) -> None:
         kept = Kept(message)
@@ -125,21 +133,17 @@ def _check_copies(message: UInt8MultiArray) -> None:
         announce("foreign: a copy differs")
 
 
-def keep(topic: str) -> None:
-    """Take messages of a topic; each line of input lets go of all."""
+def keep(topic: str, zero_copy: str) -> None:
+    """Take messages of a topic, and obey each line of input."""
+    os.environ["MANYCORE_ZERO_COPY"] = zero_copy
     keeper = Keeper()
 
     def listen() -> None:
-        for _ in sys.stdin:
-            keeper.rests.set()
+        for line in sys.stdin:
+            rclpy.get_global_executor().create_task(keeper.obey, line.strip())
 
     with peer_node(f"keeper_{os.getpid()}") as node:
         node.create_subscription(UInt8MultiArray, topic, keeper.take, DEPTH)
         threading.Thread(target=listen, daemon=True).start()
         announce("works")
-        while True:
-            rclpy.spin_once(node, timeout_sec=0.05)
-            if keeper.rests.is_set():
-                keeper.rests.clear()
-                keeper.drop_all()
-                announce("rests")
+        rclpy.spin(node)
