@@ -82,5 +82,11 @@ bool prepare() {
 
 // NOLINTNEXTLINE(readability-identifier-naming): the name that Python looks for
 PyMODINIT_FUNC PyInit__rmw_manycore_arrays() {
-  return prepare() ? PyModule_Create(&definition) : nullptr;
+  PyObject * const module = prepare() ? PyModule_Create(&definition) : nullptr;
+#ifdef Py_GIL_DISABLED
+  if (module != nullptr) {  // it changes nothing there: see find_fault_in_layout()
+    PyUnstable_Module_SetGIL(module, Py_MOD_GIL_NOT_USED);
+  }
+#endif
+  return module;
 }

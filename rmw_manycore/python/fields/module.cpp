@@ -134,5 +134,8 @@ PyMODINIT_FUNC PyInit__rmw_manycore_fields() {
     Py_XDECREF(module);
     return nullptr;
   }
+#ifdef Py_GIL_DISABLED
+  PyUnstable_Module_SetGIL(module, Py_MOD_GIL_NOT_USED);  // nothing changes after create()
+#endif
   return module;
 }
