@@ -6,6 +6,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import signal
 import subprocess
 import time
@@ -18,11 +19,13 @@ from tempfile import TemporaryDirectory
 from rmw_manycore_program import own_program
 from rmw_manycore_py.bench.load import busy
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.trace.events import Kind, Trace, endpoint_id
 from rmw_manycore_py.trace.files import load
 
 CONDITIONS = ("alone", "beside busy loops", "on one CPU")
 _LOOPS = 3
+_STAMP = re.compile(r"\[(\d{10})\.(\d{9})\]")
 _LOGGED = {Kind.WRITE: "publishes", Kind.RELEASE: "takes"}
 
 
@@ -92,7 +95,8 @@ def runs_of(
             trace = load(path)
             if trace.lost:
                 raise ManycoreError(f"{trace.lost} events are missing, as rings were full")
-            seen = tuple(_printed(output)), tuple(_messages(trace))
+            end_ns = _transport.virtual_start_ns + round(duration_s * 1e9)
+            seen = tuple(_printed(output, end_ns)), tuple(_messages(trace, end_ns))
             yield VirtualRun(condition, *seen, trace, wall_s)
 
 
@@ -128,22 +132,31 @@ def _events(output: str) -> Iterator[dict[str, str]]:
     return map(json.loads, output.splitlines())
 
 
-def _printed(output: str) -> list[str]:
-    """Return the lines of each node; those of several nodes mix by chance."""
+def _printed(output: str, end_ns: int) -> list[str]:
+    """Return the lines of each node; those of several nodes mix by chance.
+
+    What nodes log after the end is of the wall clock: by their endings, one after the other.
+    """
     lines: dict[str, list[str]] = {}
     for event in _events(output):
-        if event["event"] == "output":
+        if event["event"] == "output" and _stamp_ns(event["line"]) <= end_ns:
             lines.setdefault(event["node"], []).append(event["line"])
     return [f"{node} prints {line}" for node in sorted(lines) for line in lines[node]]
 
 
-def _messages(trace: Trace) -> list[str]:
+def _stamp_ns(line: str) -> int:
+    """Return the time of a line of a ROS logger, or 0."""
+    found = _STAMP.search(line)
+    return int(found[1]) * 1_000_000_000 + int(found[2]) if found else 0
+
+
+def _messages(trace: Trace, end_ns: int) -> list[str]:
     found = []
     for process, thread in trace.threads():
         if process.is_receive_thread:
             continue
         for time_ns, number, _, slot, incarnation, kind in thread.events.tolist():
-            if kind in _LOGGED:
+            if kind in _LOGGED and time_ns <= end_ns:
                 endpoint = endpoint_id(slot, incarnation)
                 node = trace.node_of(endpoint).removesuffix(f"_{process.pid}")
                 topic = trace.topic_of(endpoint)
