@@ -18,7 +18,7 @@ from rmw_manycore_py.advice.rewriting import rewritten
 from rmw_manycore_py.advice.solving import Effort, candidates
 from rmw_manycore_py.advice.weights import Objective
 from rmw_manycore_py.errors import MapfileError
-from rmw_manycore_py.extras import ORTOOLS, SIMPY, require
+from rmw_manycore_py.errors.missing_library import ORTOOLS, SIMPY, require
 from rmw_manycore_py.mapfile import Mapfile, load_mapfile, resolve
 from rmw_manycore_py.mapfile.placing.moves import RoomError
 from rmw_manycore_py.platform.topology import usable_cpus

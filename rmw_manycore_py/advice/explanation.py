@@ -10,7 +10,7 @@ from typing import Any
 from rmw_manycore_py.advice.advising import Advice
 from rmw_manycore_py.advice.problem import Clusters, Problem, Traffic
 from rmw_manycore_py.advice.ranking import NOW, Candidate, Ranked
-from rmw_manycore_py.mapping.verdict import rates_text
+from rmw_manycore_py.mapfile.mapping.verdict import rates_text
 from rmw_manycore_py.platform.texts import counted, listed, size_text
 
 _MAX_NAMES = 6

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from rmw_manycore_py.advice.application import Application
 from rmw_manycore_py.advice.problem import Clusters, Problem, Traffic
 from rmw_manycore_py.mapfile import Mapfile, Placement
-from rmw_manycore_py.mapping.verdict import rates_text
+from rmw_manycore_py.mapfile.mapping.verdict import rates_text
 from rmw_manycore_py.platform.texts import listed, size_text
 from rmw_manycore_py.profile.model import Profile
 

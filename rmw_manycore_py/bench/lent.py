@@ -11,7 +11,7 @@ from rmw_manycore_py.bench.question import PAYLOADS, Measure, Question, Run
 from rmw_manycore_py.bench.round_trip import in_us
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
-from rmw_manycore_py.extras import ICEORYX2, missing
+from rmw_manycore_py.errors.missing_library import ICEORYX2, missing
 
 SIZES = ("64 B", "64 KiB", "1 MiB", "8 MiB")
 WARM_UP = 100

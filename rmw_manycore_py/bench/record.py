@@ -13,7 +13,7 @@ from rmw_manycore_py.bench.contenders import INSIDE, MIB
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
-from rmw_manycore_py.extras import MCAP, require
+from rmw_manycore_py.errors.missing_library import MCAP, require
 
 TOPIC = "/bench"
 SECONDS = 20.0

@@ -24,7 +24,7 @@ from rmw_manycore_py.cli.common.printing import (
     size_text,
 )
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.extras import SIMPY, require
+from rmw_manycore_py.errors.missing_library import SIMPY, require
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 from rmw_manycore_py.prediction import Prediction, Target, predict, sites_of
 from rmw_manycore_py.prediction.json_data import as_data

@@ -6,7 +6,7 @@ from __future__ import annotations
 from contextlib import closing
 
 from rmw_manycore_program import own_program
-from rmw_manycore_py.extras import ZENOH, require_installed
+from rmw_manycore_py.errors.missing_library import ZENOH, require_installed
 from rmw_manycore_py.launch.events import Finished
 from rmw_manycore_py.launch.processes.environment import outside_environment
 from rmw_manycore_py.launch.processes.program import NodeProgram

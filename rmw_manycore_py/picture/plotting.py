@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmw_manycore_py.extras import MATPLOTLIB, require
+from rmw_manycore_py.errors.missing_library import MATPLOTLIB, require
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.extras import SIMPY, require
+from rmw_manycore_py.errors.missing_library import SIMPY, require
 from rmw_manycore_py.prediction.prediction import Prediction
 from rmw_manycore_py.prediction.sites import Site, Sites, sites_of
 from rmw_manycore_py.prediction.target import TARGETS, Target

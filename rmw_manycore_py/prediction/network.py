@@ -7,11 +7,11 @@ from collections import defaultdict
 from collections.abc import Callable
 from functools import cache
 
-from rmw_manycore_py.bostan import routing
-from rmw_manycore_py.bostan.chip import run
-from rmw_manycore_py.bostan.parameters import Parameters
-from rmw_manycore_py.bostan.topology import CLUSTERS, SUBSYSTEMS, Node, io_node
-from rmw_manycore_py.bostan.transfers import Transfer
+from rmw_manycore_py.prediction.bostan import routing
+from rmw_manycore_py.prediction.bostan.chip import run
+from rmw_manycore_py.prediction.bostan.parameters import Parameters
+from rmw_manycore_py.prediction.bostan.topology import CLUSTERS, SUBSYSTEMS, Node, io_node
+from rmw_manycore_py.prediction.bostan.transfers import Transfer
 from rmw_manycore_py.prediction.target import Target
 
 Link = tuple[str, str]

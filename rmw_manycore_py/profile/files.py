@@ -12,7 +12,7 @@ from pydantic import BaseModel, ValidationError
 
 from rmw_manycore_py.errors import FileError, ManycoreError, Problem, invalid_field
 from rmw_manycore_py.profile.model import FORMAT, VERSION, Profile
-from rmw_manycore_py.whole_file import replacing
+from rmw_manycore_py.trace.atomic_file import atomic_write
 
 
 class _Head(BaseModel):
@@ -28,7 +28,7 @@ def save(profile: Profile, path: Path) -> None:
     :raises ManycoreError: if the file cannot be written.
     """
     try:
-        with replacing(path) as file:
+        with atomic_write(path) as file:
             file.write(to_text(profile).encode())
             os.fchmod(file.fileno(), 0o666 & ~_umask())
     except OSError as error:

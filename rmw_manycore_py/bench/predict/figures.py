@@ -11,7 +11,7 @@ from statistics import median
 from pydantic import BaseModel
 
 from rmw_manycore_py.mapfile import load_mapfile, resolve
-from rmw_manycore_py.mapping.recorded import Recorded
+from rmw_manycore_py.mapfile.mapping.recorded import Recorded
 from rmw_manycore_py.prediction import Prediction, Sites, predict, sites_of
 from rmw_manycore_py.prediction.target import HOST
 from rmw_manycore_py.process.scheduling import Scheduling

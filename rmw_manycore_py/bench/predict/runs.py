@@ -26,8 +26,8 @@ from rmw_manycore_py.platform.topology import usable_cpus
 from rmw_manycore_py.process.scheduling import Scheduling, scheduled_as
 from rmw_manycore_py.profile.files import load as load_profile
 from rmw_manycore_py.profile.model import Profile
+from rmw_manycore_py.trace.atomic_file import atomic_write
 from rmw_manycore_py.trace.files import load as load_trace
-from rmw_manycore_py.whole_file import replacing
 
 _PREDICTED_RUNS = 9  # whose median is compared
 _START_S = 120.0  # within which the nodes of an application have started
@@ -118,7 +118,7 @@ def measured(plan: Plan, mapping: Path, turn: int, loops: int = 0) -> Figures:
             )
         figures = measured_figures(load_trace(trace)).model_copy(update={"others": others})
         trace.unlink()
-        with replacing(path) as file:
+        with atomic_write(path) as file:
             file.write(figures.model_dump_json().encode())
     return Figures.model_validate_json(path.read_bytes())
 

@@ -11,7 +11,7 @@ import click
 
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, escaped, print_json, print_notices
-from rmw_manycore_py.extras import MCAP, require
+from rmw_manycore_py.errors.missing_library import MCAP, require
 
 if TYPE_CHECKING:
     from rmw_manycore_py.recording.recording import Recording

@@ -16,7 +16,7 @@ from rmw_manycore_py.cli.bench.options import mapping_runs_options
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.extras import ORTOOLS, SIMPY, require
+from rmw_manycore_py.errors.missing_library import ORTOOLS, SIMPY, require
 from rmw_manycore_py.mapfile.installed import find_mapfile
 
 GOALS = {"of_median": 0.8, "of_best": 1.05, "of_worst_case": 1 / 3}

@@ -13,7 +13,7 @@ import click
 
 from rmw_manycore_program import own_program
 from rmw_manycore_py.bench.session import NODES
-from rmw_manycore_py.extras import MCAP, require
+from rmw_manycore_py.errors.missing_library import MCAP, require
 from rmw_manycore_py.mapfile.installed import installed_mapfiles
 from rmw_manycore_py.papers.reference_system.bench.native_mapfile import with_native_nodes
 from rmw_manycore_py.papers.roslite.bench.drives import LENGTH_M

@@ -17,7 +17,7 @@ from typing_extensions import override
 from rmw_manycore_hook import raise_on_interrupt
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.errors import EXIT_INTERRUPTED, reported
-from rmw_manycore_py.suggestions import did_you_mean
+from rmw_manycore_py.errors.suggestions import did_you_mean
 
 MAX_SUMMARY = 50  # characters of a command's first sentence
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.errors.suggestions import did_you_mean
 from rmw_manycore_py.ros import ament
-from rmw_manycore_py.suggestions import did_you_mean
 
 KINDS = {"msg": "message", "srv": "service", "action": "action"}
 

@@ -10,8 +10,8 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
+from rmw_manycore_py.errors.suggestions import did_you_mean
 from rmw_manycore_py.mapfile.installed import SUFFIXES, find_mapfile, installed_mapfiles
-from rmw_manycore_py.suggestions import did_you_mean
 
 
 def mapfile_argument(metavar: str = "MAPFILE", default: str | None = None) -> Callable[[Any], Any]:

@@ -17,8 +17,8 @@ from rosidl_parser.definition import (
 
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, MapfileError
+from rmw_manycore_py.errors.suggestions import did_you_mean
 from rmw_manycore_py.mapfile.format.document import parse_yaml, read_text
-from rmw_manycore_py.suggestions import did_you_mean
 
 # Values that stand for the current time in place of a message.
 STAMPS = {("std_msgs", "Header"): "auto", ("builtin_interfaces", "Time"): "now"}

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from rmw_manycore_py.cli.common.printing import echo, escaped, print_json
 from rmw_manycore_py.cli.common.rows import Row
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.suggestions import did_you_mean
+from rmw_manycore_py.errors.suggestions import did_you_mean
 
 
 def show_names(

@@ -7,7 +7,7 @@ import time
 
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.suggestions import did_you_mean
+from rmw_manycore_py.errors.suggestions import did_you_mean
 
 _LOOK_S = 0.1
 

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.errors.suggestions import did_you_mean
 from rmw_manycore_py.launch.runs.directory import RunDirectory, all_runs, runs_of
 from rmw_manycore_py.launch.runs.up_command import up_command
-from rmw_manycore_py.suggestions import did_you_mean
 
 
 def living_runs(platform: str) -> list[RunDirectory]:

@@ -13,14 +13,14 @@ import click
 
 from rmw_manycore_py.cli.common.finite_range import FiniteRange
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.extras import SIMPY, require
+from rmw_manycore_py.errors.missing_library import SIMPY, require
+from rmw_manycore_py.errors.suggestions import did_you_mean
 from rmw_manycore_py.launch.platform import occupied_cores
 from rmw_manycore_py.launch.run import Mode, Run
 from rmw_manycore_py.launch.timekeeper import PlatformModel, VirtualTime
 from rmw_manycore_py.mapfile import Mapfile, Placement, load_mapfile, resolve
 from rmw_manycore_py.prediction.target_file import target_named
 from rmw_manycore_py.profile.files import load
-from rmw_manycore_py.suggestions import did_you_mean
 
 
 def starting_options(command: Callable[..., Any]) -> Callable[..., Any]:

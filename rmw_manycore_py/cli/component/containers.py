@@ -11,7 +11,7 @@ from rmw_manycore_py.cli.common.completion import completer, platform_of
 from rmw_manycore_py.cli.common.node_names import absolute_name, nodes_with_service
 from rmw_manycore_py.cli.common.tool_node import answer_of
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.suggestions import did_you_mean
+from rmw_manycore_py.errors.suggestions import did_you_mean
 
 SERVICES = {"load_node": "LoadNode", "unload_node": "UnloadNode", "list_nodes": "ListNodes"}
 

@@ -10,8 +10,8 @@ from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.component.registered import component_types, packages_with_components
 from rmw_manycore_py.cli.component.wanted_options import complete_component_packages
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.errors.suggestions import did_you_mean
 from rmw_manycore_py.ros.ament import package_prefix
-from rmw_manycore_py.suggestions import did_you_mean
 
 
 @click.command("types", epilog=examples("manycore component types"))

@@ -10,8 +10,8 @@ from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, print_json
 from rmw_manycore_py.cli.interface.kinds import kind_options, of_kinds
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.errors.suggestions import did_you_mean
 from rmw_manycore_py.ros.ament import interfaces, packages_with_interfaces
-from rmw_manycore_py.suggestions import did_you_mean
 
 
 @click.command("package", epilog=examples("manycore interface package std_srvs"))

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.errors.suggestions import did_you_mean
 from rmw_manycore_py.ros.ament import interfaces, package_share, packages_with_interfaces
-from rmw_manycore_py.suggestions import did_you_mean
 
 # The part of a line before a comment; # inside quotes does not start one.
 _CODE = re.compile(r"""(?:"[^"]*"|'[^']*'|[^#"'])*""")

@@ -9,7 +9,7 @@ from rmw_manycore_py.cli.common.completion import completer, platform_of
 from rmw_manycore_py.cli.common.node_names import absolute_name, nodes_with_service
 from rmw_manycore_py.cli.common.tool_node import answer_of
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.suggestions import did_you_mean
+from rmw_manycore_py.errors.suggestions import did_you_mean
 
 
 def lifecycle_nodes(platform: str) -> list[str]:

@@ -15,11 +15,11 @@ from rmw_manycore_py.cli.common.printing import counted, echo, print_json, print
 from rmw_manycore_py.cli.common.rates import load_rates
 from rmw_manycore_py.errors import EXIT_FAILURE, MapfileError
 from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
+from rmw_manycore_py.mapfile.mapping import facts_of
+from rmw_manycore_py.mapfile.mapping.verdict import as_data, fit_of, verdict
 from rmw_manycore_py.mapfile.placing.moves import Proposal, RoomError
 from rmw_manycore_py.mapfile.placing.room import Placed
 from rmw_manycore_py.mapfile.placing.show import cluster_row
-from rmw_manycore_py.mapping import facts_of
-from rmw_manycore_py.mapping.verdict import as_data, fit_of, verdict
 
 
 @click.command(

@@ -23,12 +23,12 @@ from rmw_manycore_py.cli.common.printing import (
 from rmw_manycore_py.cli.common.rates import load_rates
 from rmw_manycore_py.cli.map.drawing import drawing_of
 from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
+from rmw_manycore_py.mapfile.mapping import Facts, facts_of
+from rmw_manycore_py.mapfile.mapping.rates import TracedFacts
+from rmw_manycore_py.mapfile.mapping.verdict import as_data as facts_as_data
+from rmw_manycore_py.mapfile.mapping.verdict import verdict
 from rmw_manycore_py.mapfile.placing.show import as_data, rules_in_words
 from rmw_manycore_py.mapfile.programs.executables import command_text
-from rmw_manycore_py.mapping import Facts, facts_of
-from rmw_manycore_py.mapping.rates import TracedFacts
-from rmw_manycore_py.mapping.verdict import as_data as facts_as_data
-from rmw_manycore_py.mapping.verdict import verdict
 from rmw_manycore_py.platform.topology import as_host_cpu, host_cpu_text
 from rmw_manycore_py.profile.files import load
 from rmw_manycore_py.routes.route import DIRECTIONS

@@ -9,8 +9,8 @@ from typing import Any
 
 from rmw_manycore_py.cli.common.tool_node import ANSWER_TIMEOUT_S, result_of
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.errors.suggestions import did_you_mean
 from rmw_manycore_py.ros.parameter_files import applies, read_file, values_for
-from rmw_manycore_py.suggestions import did_you_mean
 
 # Index = value in rcl_interfaces/msg/ParameterType: the name, and ros2cli's label of a value.
 TYPES = (

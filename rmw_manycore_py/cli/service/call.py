@@ -18,8 +18,8 @@ from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.printing import echo, print_notices
 from rmw_manycore_py.cli.common.tool_node import result_of, tool_node
 from rmw_manycore_py.cli.common.values_argument import DEFAULTS, values_argument
+from rmw_manycore_py.errors.suggestions import closest
 from rmw_manycore_py.process.spinning import spin_once
-from rmw_manycore_py.suggestions import closest
 
 
 @click.command(

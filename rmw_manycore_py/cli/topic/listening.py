@@ -14,12 +14,12 @@ from rmw_manycore_py.cli.common.printing import echo, print_notices
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.errors.suggestions import did_you_mean
 from rmw_manycore_py.native._transport import EndpointInfo
 from rmw_manycore_py.platform.virtual_clock import virtual_clock
 from rmw_manycore_py.process.spinning import spin_once
 from rmw_manycore_py.ros.names import expand
 from rmw_manycore_py.ros.qos import all_reliable, all_transient_local
-from rmw_manycore_py.suggestions import did_you_mean
 
 ANY_QOS = QosOptions()
 

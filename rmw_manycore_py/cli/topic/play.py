@@ -17,7 +17,7 @@ from rmw_manycore_py.cli.topic.selection_options import (
     full_names,
     regex_option,
 )
-from rmw_manycore_py.extras import MCAP, require
+from rmw_manycore_py.errors.missing_library import MCAP, require
 from rmw_manycore_py.recording.selection import Selection
 from rmw_manycore_py.ros.names import expand
 

@@ -19,7 +19,7 @@ from rmw_manycore_py.cli.topic.selection_options import (
     nothing_chosen,
     regex_option,
 )
-from rmw_manycore_py.extras import MCAP, require
+from rmw_manycore_py.errors.missing_library import MCAP, require
 from rmw_manycore_py.recording.selection import Selection
 
 _MAX_CACHE_BYTES = 100 << 20  # default of rosbag2

@@ -13,8 +13,8 @@ from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, pri
 from rmw_manycore_py.cli.common.rates import load_rates
 from rmw_manycore_py.cli.trace.latency import evaluated
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.mapping.compared import ClusterTraffic, row, verdict
-from rmw_manycore_py.mapping.verdict import rates_text
+from rmw_manycore_py.mapfile.mapping.compared import ClusterTraffic, row, verdict
+from rmw_manycore_py.mapfile.mapping.verdict import rates_text
 from rmw_manycore_py.trace.comparison import Change, compare
 from rmw_manycore_py.trace.latency import TOTAL
 

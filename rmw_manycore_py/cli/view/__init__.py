@@ -15,7 +15,7 @@ from rmw_manycore_py.cli.common.options import examples, number_option, platform
 from rmw_manycore_py.cli.common.output_file import OutputFile, writing
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.view import require_platform
-from rmw_manycore_py.extras import WEB_SERVER, require_installed
+from rmw_manycore_py.errors.missing_library import WEB_SERVER, require_installed
 from rmw_manycore_py.picture.chip import Chip
 from rmw_manycore_py.platform.monitor.watch import Look, Watch
 from rmw_manycore_py.view.listener import listen

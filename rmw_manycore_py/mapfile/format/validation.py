@@ -10,6 +10,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from rmw_manycore_py.errors import Problem, shorten
+from rmw_manycore_py.errors.suggestions import closest
 from rmw_manycore_py.mapfile.format.document import Document, KeyPath
 from rmw_manycore_py.mapfile.format.model import (
     BridgeSection,
@@ -23,7 +24,6 @@ from rmw_manycore_py.mapfile.format.model import (
     SchedulingSection,
     TopicSection,
 )
-from rmw_manycore_py.suggestions import closest
 
 _EXPECTED = {
     "int_type": "an integer",

@@ -7,13 +7,13 @@ import shlex
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from rmw_manycore_py.errors.suggestions import did_you_mean
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode
 from rmw_manycore_py.mapfile.placing.prefix import placed_again
 from rmw_manycore_py.process.scheduling import refusal
 from rmw_manycore_py.ros.domain import is_elsewhere
 from rmw_manycore_py.ros.names import full_node_name
 from rmw_manycore_py.ros.patterns import is_pattern
-from rmw_manycore_py.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rmw_manycore_py.errors import Problem
+from rmw_manycore_py.errors.suggestions import closest
 from rmw_manycore_py.mapfile.placing.crossings import CROSSINGS
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode, TopicEntry
 from rmw_manycore_py.ros import ament
 from rmw_manycore_py.ros.names import expand
-from rmw_manycore_py.suggestions import closest
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile

@@ -7,7 +7,7 @@ from pathlib import Path
 from types import ModuleType
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, shorten
-from rmw_manycore_py.extras import OPEN3D, require
+from rmw_manycore_py.errors.missing_library import OPEN3D, require
 from rmw_manycore_py.ndt.files.pcd_file import read_pcd
 from rmw_manycore_py.ndt.files.ply_file import read_ply
 from rmw_manycore_py.ndt.files.unreadable import UNREADABLE, why_unreadable

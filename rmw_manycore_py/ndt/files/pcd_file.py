@@ -15,7 +15,7 @@ from typing import IO
 
 import numpy as np
 
-from rmw_manycore_py.extras import LZF, require
+from rmw_manycore_py.errors.missing_library import LZF, require
 from rmw_manycore_py.ndt.files.pcd_header import PADDING, PcdHeader, read_header
 from rmw_manycore_py.ndt.files.positions import Column, axes_in, read_data, stacked, write_binary
 from rmw_manycore_py.ndt.geometry.arrays import Points

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, what_is_wrong
-from rmw_manycore_py.extras import ROSBAGS, require
+from rmw_manycore_py.errors.missing_library import ROSBAGS, require
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.recordings.bag_poses import poses_of
 from rmw_manycore_py.ndt.recordings.connections import connections_of

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.extras import MCAP, require
+from rmw_manycore_py.errors.missing_library import MCAP, require
 from rmw_manycore_py.ndt.recordings.sqlite_rows import SqlitePages
 
 if TYPE_CHECKING:

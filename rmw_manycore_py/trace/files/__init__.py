@@ -5,11 +5,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rmw_manycore_py import extras
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.errors import ManycoreError, missing_library
+from rmw_manycore_py.trace.atomic_file import atomic_write
 from rmw_manycore_py.trace.events import Trace
 from rmw_manycore_py.trace.files import chrome, perfetto, table
-from rmw_manycore_py.whole_file import replacing
 
 PERFETTO = (".pftrace", ".perfetto-trace")
 SUFFIXES = (".json", ".csv", *PERFETTO)
@@ -18,7 +17,7 @@ SUFFIXES = (".json", ".csv", *PERFETTO)
 def require_format(path: Path) -> None:
     """Raise ManycoreError if what writes a file of this suffix is missing: before the events."""
     if path.suffix in PERFETTO:
-        extras.require(extras.PERFETTO)
+        missing_library.require(missing_library.PERFETTO)
 
 
 def save(trace: Trace, path: Path) -> None:
@@ -27,7 +26,7 @@ def save(trace: Trace, path: Path) -> None:
     :raises ManycoreError: if the file cannot be written.
     """
     try:
-        with replacing(path) as file:
+        with atomic_write(path) as file:
             if path.suffix == ".json":
                 chrome.write(trace, file)
             elif path.suffix == ".csv":

@@ -10,7 +10,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from rmw_manycore_py.extras import PERFETTO, require
+from rmw_manycore_py.errors.missing_library import PERFETTO, require
 from rmw_manycore_py.trace.counters import counters_of
 from rmw_manycore_py.trace.events import Process, Trace
 from rmw_manycore_py.trace.files import packets

@@ -11,7 +11,7 @@ import pytest
 
 from rmw_manycore_py.bench.predict import reports
 from rmw_manycore_py.errors import FileError, ManycoreError
-from rmw_manycore_py.mapping.recorded import Recorded
+from rmw_manycore_py.mapfile.mapping.recorded import Recorded
 from rmw_manycore_py.prediction import TARGETS, predict
 from rmw_manycore_py.prediction.attribution import attributed
 from rmw_manycore_py.prediction.target_file import target_named

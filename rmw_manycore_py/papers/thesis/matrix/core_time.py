@@ -11,9 +11,9 @@ from __future__ import annotations
 import math
 from functools import cache
 
-from rmw_manycore_py.bostan.cache import Cache
-from rmw_manycore_py.bostan.memory import Memory, MemoryKind, bytes_per_cycle
-from rmw_manycore_py.bostan.parameters import (
+from rmw_manycore_py.prediction.bostan.cache import Cache
+from rmw_manycore_py.prediction.bostan.memory import Memory, MemoryKind, bytes_per_cycle
+from rmw_manycore_py.prediction.bostan.parameters import (
     IO_CACHE_BYTES,
     IO_CACHE_WAYS,
     PE_CACHE_BYTES,

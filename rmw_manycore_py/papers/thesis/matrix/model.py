@@ -10,16 +10,16 @@ from functools import cache
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.relations import Relation, modelled_relations
 from rmw_manycore_py.bench.summary import Result
-from rmw_manycore_py.bostan import routing
-from rmw_manycore_py.bostan.chip import Traffic
-from rmw_manycore_py.bostan.chip import run as run_chip
-from rmw_manycore_py.bostan.memory import MEMORIES, MemoryKind
-from rmw_manycore_py.bostan.parameters import Parameters, corners
-from rmw_manycore_py.bostan.transfers import FLOW_CONTROLS, FlowControl, Transfer
 from rmw_manycore_py.papers.thesis.matrix.cases import IO_DDR, IO_SMEM, LOST, Case, Place
 from rmw_manycore_py.papers.thesis.matrix.claims import CLAIMS
 from rmw_manycore_py.papers.thesis.matrix.core_time import FLOAT_BYTES, product_cycles
 from rmw_manycore_py.papers.thesis.matrix.figures import Draw
+from rmw_manycore_py.prediction.bostan import routing
+from rmw_manycore_py.prediction.bostan.chip import Traffic
+from rmw_manycore_py.prediction.bostan.chip import run as run_chip
+from rmw_manycore_py.prediction.bostan.memory import MEMORIES, MemoryKind
+from rmw_manycore_py.prediction.bostan.parameters import Parameters, corners
+from rmw_manycore_py.prediction.bostan.transfers import FLOW_CONTROLS, FlowControl, Transfer
 
 TILES = 4
 CORES = 16

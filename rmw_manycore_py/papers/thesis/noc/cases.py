@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rmw_manycore_py.bostan.dma import METHODS, Method
-from rmw_manycore_py.bostan.memory import MEMORIES, MemoryKind
-from rmw_manycore_py.bostan.packets import MAX_TRANSFER_BYTES
-from rmw_manycore_py.bostan.transfers import FLOW_CONTROLS
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.prediction.bostan.dma import METHODS, Method
+from rmw_manycore_py.prediction.bostan.memory import MEMORIES, MemoryKind
+from rmw_manycore_py.prediction.bostan.packets import MAX_TRANSFER_BYTES
+from rmw_manycore_py.prediction.bostan.transfers import FLOW_CONTROLS
 
 SIZES = (100, 1_000, 10_000, 100_000, 1_000_000)
 RUNS = 200  # of a round; the default is five rounds

@@ -6,8 +6,6 @@ from __future__ import annotations
 from typing import Protocol
 
 from rmw_manycore_py.bench.relations import Claim, Found, side
-from rmw_manycore_py.bostan.dma import METHODS, Method
-from rmw_manycore_py.bostan.memory import MEMORIES, MemoryKind
 from rmw_manycore_py.papers.thesis.noc.cases import (
     FLOW_CONTROL,
     NO_FLOW_CONTROL,
@@ -15,6 +13,8 @@ from rmw_manycore_py.papers.thesis.noc.cases import (
     Setting,
     size_name,
 )
+from rmw_manycore_py.prediction.bostan.dma import METHODS, Method
+from rmw_manycore_py.prediction.bostan.memory import MEMORIES, MemoryKind
 
 # Two times are alike up to this ratio.
 ALIKE = 1.1

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from rmw_manycore_py.bench.box_plot import Boxes, draw_boxes
 from rmw_manycore_py.bench.summary import Result
-from rmw_manycore_py.bostan.dma import Method
-from rmw_manycore_py.bostan.memory import MemoryKind
 from rmw_manycore_py.papers.thesis.noc.cases import Case, Setting, question_of, size_name
+from rmw_manycore_py.prediction.bostan.dma import Method
+from rmw_manycore_py.prediction.bostan.memory import MemoryKind
 
 # The caption of Fig. 4.4 repeats that of 4.5; the text says Tx.
 _PANELS: dict[str, tuple[Method, MemoryKind]] = {

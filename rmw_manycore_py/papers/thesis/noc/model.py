@@ -14,11 +14,14 @@ from functools import cache
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.relations import Claim, Found, Relation, Side, modelled_relations, side
 from rmw_manycore_py.bench.summary import Result
-from rmw_manycore_py.bostan import routing
-from rmw_manycore_py.bostan.chip import run as run_chip
-from rmw_manycore_py.bostan.dma import Method
-from rmw_manycore_py.bostan.memory import MemoryKind
-from rmw_manycore_py.bostan.parameters import (
+from rmw_manycore_py.papers.thesis.noc.cases import OVERFLOW, RUNS, Case, Setting, question_of
+from rmw_manycore_py.papers.thesis.noc.claims import CLAIMS
+from rmw_manycore_py.papers.thesis.noc.figures import Draw
+from rmw_manycore_py.prediction.bostan import routing
+from rmw_manycore_py.prediction.bostan.chip import run as run_chip
+from rmw_manycore_py.prediction.bostan.dma import Method
+from rmw_manycore_py.prediction.bostan.memory import MemoryKind
+from rmw_manycore_py.prediction.bostan.parameters import (
     LINK_BYTES_PER_CYCLE,
     PUBLISHED_CLOCK_HZ,
     PUBLISHED_ROUND_TRIP_S,
@@ -26,11 +29,8 @@ from rmw_manycore_py.bostan.parameters import (
     Parameters,
     corners,
 )
-from rmw_manycore_py.bostan.routing import Route
-from rmw_manycore_py.bostan.transfers import FLOW_CONTROLS, Transfer
-from rmw_manycore_py.papers.thesis.noc.cases import OVERFLOW, RUNS, Case, Setting, question_of
-from rmw_manycore_py.papers.thesis.noc.claims import CLAIMS
-from rmw_manycore_py.papers.thesis.noc.figures import Draw
+from rmw_manycore_py.prediction.bostan.routing import Route
+from rmw_manycore_py.prediction.bostan.transfers import FLOW_CONTROLS, Transfer
 
 DIRECT, CROSS, DETOUR, BETWEEN = "direct", "cross", "detour", "cluster to cluster"
 SETTING = Setting((DIRECT, CROSS, DETOUR), CROSS, BETWEEN)

@@ -11,28 +11,28 @@ from itertools import permutations
 
 import pytest
 
-from rmw_manycore_py.bostan import routing, topology
-from rmw_manycore_py.bostan.cache import Cache
-from rmw_manycore_py.bostan.chip import run
-from rmw_manycore_py.bostan.fifo import Fifo
-from rmw_manycore_py.bostan.memory import Memory
-from rmw_manycore_py.bostan.packets import (
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.papers.thesis.noc.cases import Case
+from rmw_manycore_py.papers.thesis.noc.model import ROUTES, SETTING, relevant
+from rmw_manycore_py.prediction.bostan import routing, topology
+from rmw_manycore_py.prediction.bostan.cache import Cache
+from rmw_manycore_py.prediction.bostan.chip import run
+from rmw_manycore_py.prediction.bostan.fifo import Fifo
+from rmw_manycore_py.prediction.bostan.memory import Memory
+from rmw_manycore_py.prediction.bostan.packets import (
     MAX_TRANSFER_BYTES,
     Packet,
     flits_of,
     payloads,
 )
-from rmw_manycore_py.bostan.parameters import (
+from rmw_manycore_py.prediction.bostan.parameters import (
     REFRESH_INTERVAL_S,
     REFRESH_S,
     Parameters,
     corners,
     range_of,
 )
-from rmw_manycore_py.bostan.transfers import Transfer
-from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.papers.thesis.noc.cases import Case
-from rmw_manycore_py.papers.thesis.noc.model import ROUTES, SETTING, relevant
+from rmw_manycore_py.prediction.bostan.transfers import Transfer
 
 pytestmark = pytest.mark.unit
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from rmw_manycore_py.bostan.parameters import Parameters
 from rmw_manycore_py.papers.thesis.matrix.core_time import product_cycles
+from rmw_manycore_py.prediction.bostan.parameters import Parameters
 
 pytestmark = pytest.mark.unit
 

@@ -8,12 +8,12 @@ import re
 import pytest
 
 from rmw_manycore_py.bench.relations import Relation, measured_relations
-from rmw_manycore_py.bostan.parameters import Parameters
 from rmw_manycore_py.papers.thesis.matrix import claims as matrix_claims
 from rmw_manycore_py.papers.thesis.matrix import model as matrix_model
 from rmw_manycore_py.papers.thesis.noc import claims as noc_claims
 from rmw_manycore_py.papers.thesis.noc import model as noc_model
 from rmw_manycore_py.papers.thesis.noc.cases import SIZES
+from rmw_manycore_py.prediction.bostan.parameters import Parameters
 from support import REPOSITORY
 
 pytestmark = pytest.mark.unit

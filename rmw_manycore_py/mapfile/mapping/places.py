@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rmw_manycore_py.mapfile import Placement
-from rmw_manycore_py.mapping.crossing import Publication
+from rmw_manycore_py.mapfile.mapping.crossing import Publication
 from rmw_manycore_py.platform.topology import Core
 from rmw_manycore_py.ros.domain import is_elsewhere
 from rmw_manycore_py.ros.names import full_node_name

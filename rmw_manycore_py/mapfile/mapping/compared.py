@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from rmw_manycore_py.mapping.recorded import Recorded
+from rmw_manycore_py.mapfile.mapping.recorded import Recorded
 from rmw_manycore_py.trace.events import Trace
 
 Verdict = Literal["more", "less", "same"]

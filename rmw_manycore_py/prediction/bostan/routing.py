@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
-from rmw_manycore_py.bostan import topology
-from rmw_manycore_py.bostan.topology import SIDE, Hop, Node
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.prediction.bostan import topology
+from rmw_manycore_py.prediction.bostan.topology import SIDE, Hop, Node
 
 Route = tuple[Node, ...]
 

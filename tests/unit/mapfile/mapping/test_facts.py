@@ -16,10 +16,10 @@ from click.testing import CliRunner, Result
 from rmw_manycore_py.cli.main import cli
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.mapfile import check
-from rmw_manycore_py.mapping import Facts, facts_of
-from rmw_manycore_py.mapping.crossing import Publication, Traffic
-from rmw_manycore_py.mapping.recorded import Recorded
-from rmw_manycore_py.mapping.verdict import verdict
+from rmw_manycore_py.mapfile.mapping import Facts, facts_of
+from rmw_manycore_py.mapfile.mapping.crossing import Publication, Traffic
+from rmw_manycore_py.mapfile.mapping.recorded import Recorded
+from rmw_manycore_py.mapfile.mapping.verdict import verdict
 from rmw_manycore_py.trace.events import (
     EVENT,
     NO_ENDPOINT,

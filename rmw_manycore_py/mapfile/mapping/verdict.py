@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from typing import Any, Literal
 
 from rmw_manycore_py.mapfile import ClusterMemory
-from rmw_manycore_py.mapping.crossing import Crossing
-from rmw_manycore_py.mapping.facts import Facts
-from rmw_manycore_py.mapping.rates import TracedFacts
+from rmw_manycore_py.mapfile.mapping.crossing import Crossing
+from rmw_manycore_py.mapfile.mapping.facts import Facts
+from rmw_manycore_py.mapfile.mapping.rates import TracedFacts
 from rmw_manycore_py.platform.texts import counted, listed, size_text
 
 Fit = Literal["fits", "tight", "too small"]

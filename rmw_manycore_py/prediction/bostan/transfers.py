@@ -8,12 +8,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from rmw_manycore_py.bostan.dma import Method
-from rmw_manycore_py.bostan.memory import MemoryKind
-from rmw_manycore_py.bostan.packets import flits_of, payloads
-from rmw_manycore_py.bostan.parameters import RX_PER_NODE, UC_PER_NODE, Parameters
-from rmw_manycore_py.bostan.routing import Route, checked
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.prediction.bostan.dma import Method
+from rmw_manycore_py.prediction.bostan.memory import MemoryKind
+from rmw_manycore_py.prediction.bostan.packets import flits_of, payloads
+from rmw_manycore_py.prediction.bostan.parameters import RX_PER_NODE, UC_PER_NODE, Parameters
+from rmw_manycore_py.prediction.bostan.routing import Route, checked
 
 # "none": senders send as fast as they can. "credits": a transfer has no more flits under way than
 # its share of every FIFO on its route has room for.

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rmw_manycore_py.mapfile import ClusterMemory, Placement
-from rmw_manycore_py.mapping.crossing import Crossing, Publication, Traffic
-from rmw_manycore_py.mapping.places import Places
-from rmw_manycore_py.mapping.rates import Rates, TracedFacts
-from rmw_manycore_py.mapping.recorded import Recorded
+from rmw_manycore_py.mapfile.mapping.crossing import Crossing, Publication, Traffic
+from rmw_manycore_py.mapfile.mapping.places import Places
+from rmw_manycore_py.mapfile.mapping.rates import Rates, TracedFacts
+from rmw_manycore_py.mapfile.mapping.recorded import Recorded
 from rmw_manycore_py.platform.monitor.graph import EVERY_NODES_TOPICS
 from rmw_manycore_py.trace.events import Trace
 

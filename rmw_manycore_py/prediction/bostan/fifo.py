@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from rmw_manycore_py.bostan.packets import Packet
+from rmw_manycore_py.prediction.bostan.packets import Packet
 
 
 class Fifo:

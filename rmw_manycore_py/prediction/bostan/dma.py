@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from rmw_manycore_py.bostan.memory import Memory
-from rmw_manycore_py.bostan.parameters import BYTES_PER_LOAD, Parameters
+from rmw_manycore_py.prediction.bostan.memory import Memory
+from rmw_manycore_py.prediction.bostan.parameters import BYTES_PER_LOAD, Parameters
 
 Method = Literal["Tx", "UC"]
 METHODS: tuple[Method, ...] = ("Tx", "UC")

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from rmw_manycore_py.bostan.parameters import (
+from rmw_manycore_py.prediction.bostan.parameters import (
     BYTES_PER_LOAD,
     REFRESH_INTERVAL_S,
     REFRESH_S,

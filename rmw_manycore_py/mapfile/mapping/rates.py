@@ -8,9 +8,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.mapping.crossing import Crossing, Publication
-from rmw_manycore_py.mapping.places import Places
-from rmw_manycore_py.mapping.recorded import Recorded
+from rmw_manycore_py.mapfile.mapping.crossing import Crossing, Publication
+from rmw_manycore_py.mapfile.mapping.places import Places
+from rmw_manycore_py.mapfile.mapping.recorded import Recorded
 from rmw_manycore_py.platform.topology import Core
 
 

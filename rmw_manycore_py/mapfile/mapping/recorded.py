@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.mapping.crossing import Publication, Traffic
+from rmw_manycore_py.mapfile.mapping.crossing import Publication, Traffic
 from rmw_manycore_py.platform.monitor.graph import EVERY_NODES_TOPICS
 from rmw_manycore_py.trace.events import Endpoint, Events, Kind, Process, Trace, endpoint_ids
 from rmw_manycore_py.trace.flows import merged

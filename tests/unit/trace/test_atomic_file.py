@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rmw_manycore_py.whole_file import replacing
+from rmw_manycore_py.trace.atomic_file import atomic_write
 
 pytestmark = pytest.mark.unit
 
@@ -17,7 +17,7 @@ def test_an_error_keeps_the_file_as_it_was(tmp_path: Path) -> None:
     path.write_bytes(b"before")
 
     def fail() -> None:
-        with replacing(path) as file:
+        with atomic_write(path) as file:
             file.write(b"half")
             raise OSError("full")
 
@@ -25,7 +25,7 @@ def test_an_error_keeps_the_file_as_it_was(tmp_path: Path) -> None:
         fail()
     assert path.read_bytes() == b"before"
     assert list(tmp_path.iterdir()) == [path]
-    with replacing(path) as file:
+    with atomic_write(path) as file:
         file.write(b"after")
         assert path.read_bytes() == b"before"
     assert path.read_bytes() == b"after"

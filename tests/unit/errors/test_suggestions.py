@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from rmw_manycore_py.suggestions import did_you_mean
+from rmw_manycore_py.errors.suggestions import did_you_mean
 
 pytestmark = pytest.mark.unit
 

@@ -15,9 +15,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from rmw_manycore_py.bostan.events import Events
-from rmw_manycore_py.bostan.fifo import Fifo
-from rmw_manycore_py.bostan.packets import Packet
+from rmw_manycore_py.prediction.bostan.events import Events
+from rmw_manycore_py.prediction.bostan.fifo import Fifo
+from rmw_manycore_py.prediction.bostan.packets import Packet
 
 Transmit = Callable[[Packet, float], float]
 

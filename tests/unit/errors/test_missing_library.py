@@ -11,13 +11,12 @@ from pathlib import Path
 
 import pytest
 
-from rmw_manycore_py import extras
-from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.extras import Library, missing, require, require_installed
+from rmw_manycore_py.errors import ManycoreError, missing_library
+from rmw_manycore_py.errors.missing_library import Library, missing, require, require_installed
 
 pytestmark = pytest.mark.unit
 
-LIBRARIES = [one for one in vars(extras).values() if isinstance(one, Library)]
+LIBRARIES = [one for one in vars(missing_library).values() if isinstance(one, Library)]
 ABSENT = Library(("no_such.part",), "dreams need no_such", "sleep", "or stay awake")
 TEXT = (
     "dreams need no_such (No module named 'no_such'): pip install 'rmw-manycore[sleep]'; "
@@ -55,8 +54,8 @@ def test_its_extra_installs_it(library: Library) -> None:
 
 
 def test_an_installed_one_is_returned() -> None:
-    assert require(extras.SIMPY).__name__ == "simpy"
-    assert missing(extras.SIMPY) == ""
+    assert require(missing_library.SIMPY).__name__ == "simpy"
+    assert missing(missing_library.SIMPY) == ""
 
 
 @pytest.mark.parametrize(

@@ -8,14 +8,14 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from rmw_manycore_py.bostan.dma import Sender
-from rmw_manycore_py.bostan.events import Events
-from rmw_manycore_py.bostan.memory import Memory, MemoryKind
-from rmw_manycore_py.bostan.network import Link, Transmit
-from rmw_manycore_py.bostan.packets import Packet, flits_of, payloads
-from rmw_manycore_py.bostan.parameters import Parameters
-from rmw_manycore_py.bostan.topology import Hop
-from rmw_manycore_py.bostan.transfers import (
+from rmw_manycore_py.prediction.bostan.dma import Sender
+from rmw_manycore_py.prediction.bostan.events import Events
+from rmw_manycore_py.prediction.bostan.memory import Memory, MemoryKind
+from rmw_manycore_py.prediction.bostan.network import Link, Transmit
+from rmw_manycore_py.prediction.bostan.packets import Packet, flits_of, payloads
+from rmw_manycore_py.prediction.bostan.parameters import Parameters
+from rmw_manycore_py.prediction.bostan.topology import Hop
+from rmw_manycore_py.prediction.bostan.transfers import (
     FlowControl,
     Outcome,
     Transfer,

@@ -6,8 +6,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from rmw_manycore_py.bostan.parameters import FLIT_BYTES, MAX_PAYLOAD_FLITS
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.prediction.bostan.parameters import FLIT_BYTES, MAX_PAYLOAD_FLITS
 
 MAX_PAYLOAD_BYTES = MAX_PAYLOAD_FLITS * FLIT_BYTES
 # The SMEM of a cluster.
