@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.native._transport import PlatformError
 
@@ -10,6 +13,8 @@ IN_USE = (
     "an array of the message is still in use: let go of it inside `with` (del, or work in a "
     "function), or keep message.copy() instead"
 )
+# The native module raises ValueError if another thread has closed the object.
+NATIVE_ERRORS = (PlatformError, MemoryError, ValueError, BufferError)
 
 
 class TransportError(ManycoreError):
@@ -29,24 +34,20 @@ def refusal(what: str, expected: str, found: object) -> TransportError:
     return TransportError(f"{what}: expected {expected}, found {found}", EXIT_BAD_INPUT)
 
 
-class native_errors:  # noqa: N801 (a context manager like contextlib's, on the way of a message)
+@contextmanager
+def native_errors(subject: str) -> Iterator[None]:
     """Raise a TransportError about `subject` for an error of the native module.
 
-    The native module raises ValueError if another thread has closed the object.
+    Calls that each message makes catch NATIVE_ERRORS instead, which costs nothing without one.
     """
+    try:
+        yield
+    except NATIVE_ERRORS as error:
+        raise translated(subject, error) from error
 
-    __slots__ = ("_subject",)
 
-    def __init__(self, subject: str) -> None:
-        self._subject = subject
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(
-        self, _: type[BaseException] | None, error: BaseException | None, *__: object
-    ) -> None:
-        if isinstance(error, BufferError):
-            raise MessageInUseError(f"{self._subject}: {IN_USE}") from error
-        if isinstance(error, (PlatformError, MemoryError, ValueError)):
-            raise TransportError(f"{self._subject}: {error or 'out of memory'}") from error
+def translated(subject: str, error: Exception) -> TransportError:
+    """Return the TransportError about `subject` for one of NATIVE_ERRORS."""
+    if isinstance(error, BufferError):
+        return MessageInUseError(f"{subject}: {IN_USE}")
+    return TransportError(f"{subject}: {error or 'out of memory'}")

@@ -68,4 +68,4 @@ def array_in(
     if 0 in shape:
         return np.empty(shape, dtype)
     elements: NDArray[Scalar] = np.frombuffer(memoryview(native), dtype)
-    return elements.reshape(shape)
+    return elements if len(shape) == 1 else elements.reshape(shape)

@@ -83,10 +83,10 @@ class Message(Generic[Scalar]):
         if claim is None:
             raise TransportError("the message was released: use its array inside `with`, or copy()")
         view = memoryview(claim)
-        layout = self._heads.layout_of(view, claim.size)
+        layout = self._heads.layout_of(view)
         dtype = self._dtype if layout.is_little_endian else self._dtype.newbyteorder(">")
         if layout.size == 0:
             return np.empty(layout.shape, dtype)
         # This keeps the view of the claim as long as an array lives, which np.ndarray() would not.
         elements: NDArray[Scalar] = np.frombuffer(view, dtype, layout.size, layout.offset_bytes)
-        return elements.reshape(layout.shape)
+        return elements if len(layout.shape) == 1 else elements.reshape(layout.shape)

@@ -137,9 +137,10 @@ class Heads:
         self._itemsize = itemsize
         self._last: tuple[int, bytes, Layout | None] = (0, b"", None)
 
-    def layout_of(self, message: memoryview, size_bytes: int) -> Layout:
+    def layout_of(self, message: memoryview) -> Layout:
         """Return the same as the function."""
         last_bytes, head, layout = self._last
+        size_bytes = len(message)
         if layout is not None and size_bytes == last_bytes and message[: len(head)] == head:
             return layout
         layout = layout_of(message, size_bytes, self._itemsize)

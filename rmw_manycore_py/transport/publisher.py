@@ -12,10 +12,12 @@ from rmw_manycore_py.native import _transport
 from rmw_manycore_py.transport.arguments import Deadline, checked_number
 from rmw_manycore_py.transport.closing import Closing
 from rmw_manycore_py.transport.errors import (
+    NATIVE_ERRORS,
     TransportError,
     TransportTimeoutError,
     native_errors,
     refusal,
+    translated,
 )
 from rmw_manycore_py.transport.loan import Loan, array_in
 from rmw_manycore_py.transport.multi_array import Scalar, checked_shape, head_of, room_for
@@ -60,9 +62,11 @@ class Publisher(Closing, Generic[Scalar]):
         """
         native = self._opened()
         contiguous = self._checked(array)
-        with native_errors(self.topic):
-            head = head_of(contiguous.shape, contiguous.itemsize)
+        head = head_of(contiguous.shape, contiguous.itemsize)
+        try:
             return native.publish_parts(head, contiguous.data)
+        except NATIVE_ERRORS as error:
+            raise translated(self.topic, error) from error
 
     def lend(self, shape: int | tuple[int, ...]) -> Loan[Scalar]:
         """Lend an array in shared memory, which is published without a copy.
@@ -80,8 +84,10 @@ class Publisher(Closing, Generic[Scalar]):
         native = self._opened()
         wanted = shape if isinstance(shape, (int, tuple)) else checked_shape(shape)
         sizes, head, body_bytes = room_for(wanted, self.dtype.itemsize)
-        with native_errors(self.topic):
+        try:
             room = native.lend(head, body_bytes)
+        except NATIVE_ERRORS as error:
+            raise translated(self.topic, error) from error
         if room is None:
             raise TransportError(
                 f"{self.topic}: its messages lie in a ring of fixed size or are transferred, so no "

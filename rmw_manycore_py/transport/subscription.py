@@ -13,9 +13,10 @@ from rmw_manycore_py.native import _transport
 from rmw_manycore_py.transport.arguments import Deadline
 from rmw_manycore_py.transport.closing import Closing
 from rmw_manycore_py.transport.errors import (
+    NATIVE_ERRORS,
     TransportError,
     TransportTimeoutError,
-    native_errors,
+    translated,
 )
 from rmw_manycore_py.transport.message import Message
 from rmw_manycore_py.transport.multi_array import Heads, Scalar
@@ -57,25 +58,26 @@ class Subscription(Closing, Generic[Scalar]):
         :raises MessageInUseError: if the previous message is still in use.
         :raises TransportError: if the subscription was closed, or the platform was removed.
         """
-        deadline = Deadline(timeout_s)
-        if (ready := self.try_take()) is not None:
-            return ready
-        while True:
-            self._opened()
-            with native_errors(self.topic):
-                seen = self._process.epoch()
-            message = self.try_take()
-            if message is not None:
-                return message
-            with native_errors(self.topic):
-                if not self._process.wait(seen, deadline.left_s()):
+        deadline = None if timeout_s is None else Deadline(timeout_s)
+        seen = None  # what had arrived before the last look, of which a wait would not tell
+        while (message := self.try_take()) is None:
+            left_s = None if deadline is None else deadline.left_s()
+            try:
+                if seen is not None and not self._process.wait(seen, left_s):
                     raise TransportTimeoutError(f"{self.topic}: no message within {timeout_s:g} s")
+                self._opened()
+                seen = self._process.epoch()
+            except NATIVE_ERRORS as error:
+                raise translated(self.topic, error) from error
+        return message
 
     def try_take(self) -> Message[Scalar] | None:
         """Return the next message, or None if there is none; otherwise like `take`."""
         native = self._opened()
-        with native_errors(self.topic):
+        try:
             claim = native.claim()
+        except NATIVE_ERRORS as error:
+            raise translated(self.topic, error) from error
         return None if claim is None else Message(claim, self.dtype, self._heads)
 
     def take_copy(self, timeout_s: float | None = None) -> NDArray[Scalar]:

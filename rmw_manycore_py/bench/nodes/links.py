@@ -10,6 +10,7 @@ from __future__ import annotations
 import ctypes
 import importlib
 import os
+import struct
 from functools import cache
 from typing import Any, Protocol
 
@@ -19,6 +20,7 @@ from rmw_manycore_py import transport
 
 PLATFORM = "MANYCORE_PLATFORM"  # its value names the services of iceoryx2, too
 DEPTH = 10
+NUMBER = struct.Struct("=Q")
 
 
 class Sender(Protocol):
@@ -45,7 +47,7 @@ class ManycoreSender:
     def send(self, number: int) -> None:
         """Publish a message in lent room."""
         with self._publisher.lend(self._shape) as loan:
-            loan.array.view(np.uint64)[0] = number
+            NUMBER.pack_into(loan.array.data, 0, number)
 
 
 class ManycoreReceiver:
@@ -57,7 +59,7 @@ class ManycoreReceiver:
     def receive(self) -> int:
         """Read a message where it lies."""
         with self._subscription.take() as message:
-            return int(message.array[:8].view(np.uint64)[0])
+            return int(NUMBER.unpack_from(message.array.data)[0])
 
 
 @cache
