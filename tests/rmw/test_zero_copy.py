@@ -10,6 +10,7 @@ import json
 import os
 import pickle
 import random
+import shutil
 import subprocess
 import sys
 import threading
@@ -30,7 +31,7 @@ from rmw_manycore_py.native._transport import Platform
 from support import IS_MANYCORE, TIMEOUT_S, wait_until
 from support.nodes.exchanging import Exchange, in_record, large, status_of_child
 from support.nodes.ros import announce, lost_messages, peer_node, spin_until
-from support.processes.platforms import environment, unique_platform
+from support.processes.platforms import PLATFORMS, environment, unique_platform
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="others copy")
 
@@ -241,6 +242,23 @@ def publish_until_stopped() -> None:
         spin_until(node, publisher.get_subscription_count)
         spin_until(node, lambda: not publisher.get_subscription_count())
         sys.stdin.readline()
+
+
+def test_arrays_outlive_their_platform(start_peer):
+    peer = start_peer(hold_beyond_the_platform)
+    assert peer.wait() == 0
+    assert "same" in peer.lines
+
+
+def hold_beyond_the_platform() -> None:
+    with peer_node() as node:
+        values = Exchange(node)(large())
+        assert in_record(values)
+        shutil.rmtree(PLATFORMS / os.environ["MANYCORE_PLATFORM"])
+        values[0] ^= 1
+        values.append(1)
+        values[0] ^= 1
+        announce("same" if values[:-1] == large() else "different")
 
 
 def test_damaged_messages_are_dropped(node):
