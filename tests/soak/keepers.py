@@ -13,9 +13,9 @@ import threading
 from typing import Any
 
 import rclpy
-from std_msgs.msg import UInt8MultiArray
+from sensor_msgs.msg import CompressedImage  # converted by none before, see `preload`
 
-from support.nodes.payload import HEADER, make_bytes, make_message, read_message
+from support.nodes.payload import HEADER, make_bytes, read_message
 from support.nodes.ros import announce, peer_node
 
 DEPTH = 10
@@ -30,20 +30,20 @@ FORKED, COPIED, CHANGED, KEPT = 0.002, 0.02, 0.3, 0.6  # shares of the messages
 def publish_kept(topic: str) -> None:
     """Publish messages of random sizes without rest."""
     with peer_node(f"publisher_{os.getpid()}") as node:
-        publisher = node.create_publisher(UInt8MultiArray, topic, DEPTH)
+        publisher = node.create_publisher(CompressedImage, topic, DEPTH)
         announce("works")
         number = 0
         while True:
             number += 1
             size_bytes = int(SMALLEST_BYTES * random.paretovariate(SIZES_SHAPE))
-            message = make_message(os.getpid(), number, min(size_bytes, LARGEST_BYTES))
-            publisher.publish(message)
+            data = make_bytes(os.getpid(), number, min(size_bytes, LARGEST_BYTES))
+            publisher.publish(CompressedImage(data=data))
 
 
 class Kept:
     """A message, with the writer and number that it must hold."""
 
-    def __init__(self, message: UInt8MultiArray) -> None:
+    def __init__(self, message: CompressedImage) -> None:
         self._message = message
         self._expected = _read(message)
 
@@ -60,7 +60,7 @@ class Kept:
             announce(f"foreign: {found} instead of {self._expected}")
 
 
-def _read(message: UInt8MultiArray) -> tuple[int, int] | None:
+def _read(message: CompressedImage) -> tuple[int, int] | None:
     """Return writer and number of a message; report it if it is torn."""
     try:
         return read_message(message)
@@ -75,13 +75,15 @@ class Keeper:
     def __init__(self) -> None:
         self._kept: list[Kept] = []
         self._takes = 0
+        self._takes_in_place = 0  # of a reader that is read-only
         self._rests = False
 
-    def take(self, message: UInt8MultiArray) -> None:
+    def take(self, message: CompressedImage) -> None:
         """Handle a message."""
         if not self._rests:
             self._act(message)
         self._takes += 1
+        self._takes_in_place += memoryview(message.data).readonly
         if self._takes % TOLD == 0:
             announce("took")
 
@@ -95,9 +97,11 @@ class Keeper:
         self.look()
         self._kept.clear()
         self._rests = command == REST
+        if self._rests and not self._takes_in_place:
+            announce("foreign: all messages are copies")
         announce(command)
 
-    def _act(self, message: UInt8MultiArray) -> None:
+    def _act(self, message: CompressedImage) -> None:
         kept = Kept(message)
         if random.random() < COPIED:
             _check_copies(message)
@@ -123,7 +127,7 @@ class Keeper:
             announce(f"foreign: a child ended with {status}")
 
 
-def _check_copies(message: UInt8MultiArray) -> None:
+def _check_copies(message: CompressedImage) -> None:
     """Compare copies of a message, which do not share its memory, with the message."""
     others: list[Any] = [copy.deepcopy(message), pickle.loads(pickle.dumps(message))]
     longer = copy.copy(message)
@@ -143,7 +147,7 @@ def keep(topic: str, zero_copy: str) -> None:
             rclpy.get_global_executor().create_task(keeper.obey, line.strip())
 
     with peer_node(f"keeper_{os.getpid()}") as node:
-        node.create_subscription(UInt8MultiArray, topic, keeper.take, DEPTH)
+        node.create_subscription(CompressedImage, topic, keeper.take, DEPTH)
         threading.Thread(target=listen, daemon=True).start()
         announce("works")
         rclpy.spin(node)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import random
 import struct
+from typing import Any
 
 from std_msgs.msg import UInt8MultiArray
 
@@ -23,7 +24,7 @@ def make_bytes(writer: int, number: int, size_bytes: int) -> bytes:
     return HEADER.pack(writer, number) + RANDOM_BYTES[start : start + size_bytes]
 
 
-def read_message(message: UInt8MultiArray) -> tuple[int, int]:
+def read_message(message: Any) -> tuple[int, int]:
     """Return writer and number; raise a ValueError if the message is torn."""
     data = memoryview(message.data)
     writer, number = HEADER.unpack_from(data)
