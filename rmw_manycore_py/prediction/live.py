@@ -69,7 +69,7 @@ class Live(Simulation):
             return None
         task = Task.of(self._cpus_of(placed.site), placed.site.scheduling)
         placed.threads.append((task, self._log))
-        return LiveThread(self, task, placed.site.core.cluster, placed.rest_ns)
+        return LiveThread(self, task, placed.site.core.cluster, placed.rest_ns or 0.0)
 
     def work_of(self, node: str, trigger: str, is_topic: bool) -> Work | None:
         """Return the callback of a subscription, service or client."""

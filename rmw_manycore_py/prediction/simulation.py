@@ -48,8 +48,7 @@ class Placed:
     label: str
     nodes: tuple[str, ...]
     site: Site
-    has_rest: bool  # the profile says what follows a callback
-    rest_ns: float  # CPU time after each callback
+    rest_ns: float | None  # CPU time after each callback; None if the profile does not say
     other: EventLog  # of publications outside of callbacks
     threads: list[tuple[Task, EventLog]] = field(default_factory=list)
 
@@ -171,10 +170,9 @@ class Simulation:
                     "profile of this application (manycore profile record MAPFILE)",
                     EXIT_BAD_INPUT,
                 )
-            rest_ns = (plan.rest_ns or 0.0) / self.target.speed
-            has_rest = plan.rest_ns is not None
+            rest_ns = None if plan.rest_ns is None else plan.rest_ns / self.target.speed
             log = EventLog.new(self._is_traced)
-            found.append(Placed(plan.label, names, site, has_rest, rest_ns, log))
+            found.append(Placed(plan.label, names, site, rest_ns, log))
         return found
 
     def _process_of_node(self) -> dict[int, Placed]:
@@ -338,7 +336,7 @@ class Simulation:
                 placed.site.core.cluster,
                 self.delivery,
                 self.network,
-                placed.rest_ns,
+                placed.rest_ns or 0.0,
             )
             executor.idle.append(thread)
 
@@ -355,7 +353,7 @@ class Simulation:
                 self.target.speed,
                 self._shares_of(callback),
             ),
-            self._dispatch(callback, index, is_in_rest=placed.has_rest),
+            self._dispatch(callback, index, is_in_rest=placed.rest_ns is not None),
             {one.publisher: self.publishers[one.publisher] for one in callback.publishes},
             None if group is None else self._groups[group],
             self._joins.get(index),

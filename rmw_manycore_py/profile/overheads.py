@@ -6,8 +6,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from rmw_manycore_py.profile.turns import Turn
-from rmw_manycore_py.trace.events import Kind, Row, Trace
+from rmw_manycore_py.trace.events import Kind, Process, Row, Trace
+from rmw_manycore_py.trace.flows import merged
 
 
 @dataclass
@@ -39,14 +42,21 @@ class Rest:
         return max(self.cpu_ns / self.callbacks, 0.0) if self.callbacks else None
 
 
+def process_cpu_ns(process: Process, begin_ns: int, end_ns: int) -> float:
+    """Return the CPU time of a process between two times, by samples of the time used so far."""
+    samples = merged([(process, thread) for thread in process.threads], (Kind.CPU,))
+    if not len(samples):
+        return 0.0
+    used = np.interp([begin_ns, end_ns], samples["time_ns"], samples["value"])
+    return float(used[1] - used[0])
+
+
 def receive_ns(trace: Trace, begin_ns: int, end_ns: int) -> float | None:
     """Return the CPU time of receive threads for each eMCOS message; None without messages."""
-    used_ns, received = 0, 0
-    for process, thread in trace.threads():
-        if process.is_receive_thread:
-            times, kinds = thread.events["time_ns"], thread.events["kind"]
-            within = (times >= begin_ns) & (times <= end_ns)
-            readings = thread.events["value"][within & (kinds == Kind.CPU)]
-            used_ns += int(readings[-1]) - int(readings[0]) if len(readings) else 0
-            received += int((within & (kinds == Kind.RECEIVE)).sum())
+    received = 0
+    for _, thread in trace.threads():
+        times_ns = thread.events["time_ns"][thread.events["kind"] == Kind.RECEIVE]
+        received += int(((times_ns >= begin_ns) & (times_ns <= end_ns)).sum())
+    threads = [one for one in trace.processes if one.is_receive_thread]
+    used_ns = sum(process_cpu_ns(one, begin_ns, end_ns) for one in threads)
     return used_ns / received if received else None

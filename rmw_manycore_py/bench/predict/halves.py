@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from statistics import median
 
 from rmw_manycore_py.bench.predict.reports import UNSHARED
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.prediction import Sites, predict
-from rmw_manycore_py.profile.model import Profile
+from rmw_manycore_py.profile.model import Callback, Distribution, Profile
 
 _Medians = dict[tuple[str, str], float]  # by node and topic
 
@@ -54,13 +55,13 @@ def parts_of(first: Profile, second: Profile, duration_s: float, seed: int) -> P
     found = predict(Sites({}), first, _TARGET, seed=seed, duration_s=duration_s, chains=())
     queueing = _errors(
         {(one.node, one.topic): one.p50_us for one in found.communications},
-        _medians_us(first, 1),
-        _medians_us(second),
+        _queueing_us(first, 1),
+        _queueing_us(second, MIN_MESSAGES),
     )
     chains = _errors(
         {(one.node, one.topic): one.age_us for one in found.communications},
         _ages_us(first, 1),
-        _ages_us(second),
+        _ages_us(second, MIN_MESSAGES),
     )
     if queueing is None:
         text = "the profiles have no subscription in common with times from publish to callback"
@@ -80,24 +81,26 @@ def _errors(predicted: _Medians, before: _Medians, measured: _Medians) -> PartEr
     )
 
 
-def _medians_us(profile: Profile, min_messages: int = MIN_MESSAGES) -> _Medians:
+def _medians_us(
+    profile: Profile, what: Callable[[Callback], Distribution | None], min_messages: int
+) -> _Medians:
+    """Return medians of a distribution that callbacks have."""
     middle = profile.quantile_shares.index(0.5)
     return {
-        (profile.nodes[one.node].name, one.trigger): one.queued_ns.quantiles[middle] / 1e3
+        (profile.nodes[one.node].name, one.trigger): times_ns.quantiles[middle] / 1e3
         for one in profile.callbacks
-        if one.queued_ns is not None
-        and one.node is not None
-        and (one.queued_ns.count or 0) >= min_messages
+        if one.node is not None
+        and (times_ns := what(one)) is not None
+        and (times_ns.count or 0) >= min_messages
     }
 
 
-def _ages_us(profile: Profile, min_messages: int = MIN_MESSAGES) -> _Medians:
+def _queueing_us(profile: Profile, min_messages: int) -> _Medians:
+    return _medians_us(profile, lambda one: one.queued_ns, min_messages)
+
+
+def _ages_us(profile: Profile, min_messages: int) -> _Medians:
     """Return the median ages of messages that came through other callbacks."""
-    middle = profile.quantile_shares.index(0.5)
-    queued_us = _medians_us(profile, min_messages)
-    ages_us = {
-        (profile.nodes[one.node].name, one.trigger): one.age_ns.quantiles[middle] / 1e3
-        for one in profile.callbacks
-        if one.age_ns is not None and one.node is not None
-    }
-    return {key: ages_us[key] for key, own in queued_us.items() if ages_us.get(key, 0.0) > own}
+    queueing_us = _queueing_us(profile, min_messages)
+    ages_us = _medians_us(profile, lambda one: one.age_ns, min_messages)
+    return {key: age_us for key, age_us in ages_us.items() if age_us > queueing_us[key]}

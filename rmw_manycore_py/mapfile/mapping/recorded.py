@@ -13,6 +13,7 @@ import numpy as np
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapfile.mapping.crossing import Publication, Traffic
 from rmw_manycore_py.platform.monitor.graph import EVERY_NODES_TOPICS
+from rmw_manycore_py.profile.overheads import process_cpu_ns, receive_ns
 from rmw_manycore_py.trace.events import Endpoint, Events, Kind, Process, Trace, endpoint_ids
 from rmw_manycore_py.trace.flows import merged
 from rmw_manycore_py.trace.names import nodes_of
@@ -125,17 +126,11 @@ class Recorded:
 
     def receive_cpu_s(self) -> float | None:
         """Return the CPU time of a receive thread per message; None without a message."""
-        received = sum(len(self._within(one)) for one in _events(self.trace, Kind.RECEIVE))
-        threads = [one for one in self.trace.processes if one.is_receive_thread]
-        return sum(map(self._cpu_s, threads)) / received if received else None
+        each_ns = receive_ns(self.trace, self.begin_ns, self.end_ns)
+        return None if each_ns is None else each_ns / _NS_PER_S
 
     def _cpu_s(self, process: Process) -> float:
-        """Return the CPU time between samples, which are of the time used so far."""
-        samples = merged([(process, thread) for thread in process.threads], (Kind.CPU,))
-        if not len(samples):
-            return 0.0
-        used = np.interp([self.begin_ns, self.end_ns], samples["time_ns"], samples["value"])
-        return float(used[1] - used[0]) / _NS_PER_S
+        return process_cpu_ns(process, self.begin_ns, self.end_ns) / _NS_PER_S
 
     def _within(self, events: Events) -> Events:
         times = events["time_ns"]

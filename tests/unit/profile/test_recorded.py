@@ -147,8 +147,12 @@ def test_receive_threads_have_their_cpu_time_per_message() -> None:
     for i in range(11):
         rows.append(event(100 * i, Kind.RECEIVE, FILTER_OUT, i, 1))
         rows.append(event(100 * i, Kind.CPU, NO_ENDPOINT, 0, 50 * US * i))
-    thread = Thread(9, "manycore_rt_1", np.array(rows, EVENT), 0)
-    process = Process(1, 9, None, 0, "receive thread", True, True, (thread,), 0)
+    used = [row for row in rows if row[-1] == Kind.CPU]  # of the process, whoever reads it
+    threads = tuple(
+        Thread(9 + number, "manycore_rt_1", np.array(own, EVENT), 0)
+        for number, own in enumerate((rows, used))
+    )
+    process = Process(1, 9, None, 0, "receive thread", True, True, threads, 0)
     trace = trace_of([])
     profile = profile_of(Trace("test", (*trace.processes, process), trace.endpoints, 0), 0, 10**9)
     assert profile.receive_ns == pytest.approx(500 / 11 * US)
