@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from statistics import median
 
 from rmw_manycore_py.bench.predict.figures import Figures, typical
 from rmw_manycore_py.bench.predict.runs import Compared
@@ -17,6 +18,8 @@ LIGHT = 0.60  # load per CPU up to which a mapping counts for the goals
 class MappingError:
     """Errors of a mapping: relative ones of its chains, in points of its loads.
 
+    :ivar repeated: errors of p50 of each run, taken from the median of the other runs: no
+        prediction of one run can be better.
     :ivar others: share of the CPUs that other processes took, at most.
     """
 
@@ -24,6 +27,7 @@ class MappingError:
     load: float
     p50: tuple[float, ...]
     p99: tuple[float, ...]
+    repeated: tuple[float, ...]
     load_points: float
     others: float
 
@@ -43,6 +47,7 @@ def error_of(one: Compared) -> MappingError:
         max(measured.cpus.values(), default=0.0),
         tuple(predicted.p50_us / found.p50_us - 1 for predicted, found in pairs),
         tuple(predicted.p99_us / found.p99_us - 1 for predicted, found in pairs),
+        tuple(error for name in _common(one) for error in _repeated(_p50s(one.runs, name))),
         100 * max(points, default=0.0),
         measured.others,
     )
@@ -56,6 +61,12 @@ def _common(one: Compared) -> list[str]:
 
 def _p50s(runs: Sequence[Figures], name: str) -> list[float]:
     return [run.chains[name].p50_us for run in runs]
+
+
+def _repeated(p50s_us: Sequence[float]) -> Iterator[float]:
+    for index, p50_us in enumerate(p50s_us):
+        if others := [*p50s_us[:index], *p50s_us[index + 1 :]]:
+            yield median(others) / p50_us - 1
 
 
 @dataclass(frozen=True)

@@ -3,10 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import click
@@ -32,33 +29,31 @@ RECORDING = ".mcap"
 _DELAY_S = 1.0  # for the reader of a recording to start
 
 
-@contextmanager
-def driven(mapfile: Path, *, native: bool = False) -> Iterator[Path]:
-    """Yield a mapfile that runs by itself.
+def driven(mapfile: Path, directory: Path, *, native: bool = False) -> Path:
+    """Return a mapfile that runs by itself.
 
     That is this one, unless it is an installed one of a paper, or a recording.
+
+    :param directory: of what is written.
     """
-    with TemporaryDirectory(prefix="driven-") as name:
-        directory = Path(name)
-        with_laptop = mapfile.parent / VIRTUAL_MAPFILE
-        if native:
-            if not _is_installed(mapfile, REFERENCE):
-                raise click.UsageError("--native is for autoware_reference.")
-            yield write(with_native_nodes(installed(REFERENCE)), directory / REFERENCE)
-        elif mapfile.suffix == RECORDING:
-            yield write(_played(mapfile), directory / "played.yaml")
-        elif mapfile.name == MAPFILE and with_laptop.exists():
-            yield with_laptop
-        elif _is_installed(mapfile, MAPFILE):
-            write_course(directory, synthetic_course(CourseShape(), seed=1), mapfile)
-            yield directory / VIRTUAL_MAPFILE
-        elif _is_installed(mapfile, AFTER):
-            map_path = Street(LENGTH_M, waypoints=2).write_map(directory)
-            report = str(directory / "drive.json")
-            complete = with_vehicle(installed(AFTER), map_path, length=LENGTH_M, report=report)
-            yield write(complete, directory / "ros_lite.yaml")
-        else:
-            yield mapfile
+    with_laptop = mapfile.parent / VIRTUAL_MAPFILE
+    if native:
+        if not _is_installed(mapfile, REFERENCE):
+            raise click.UsageError("--native is for autoware_reference.")
+        return write(with_native_nodes(installed(REFERENCE)), directory / REFERENCE)
+    if mapfile.suffix == RECORDING:
+        return write(_played(mapfile), directory / "played.yaml")
+    if mapfile.name == MAPFILE and with_laptop.exists():
+        return with_laptop
+    if _is_installed(mapfile, MAPFILE):
+        write_course(directory, synthetic_course(CourseShape(), seed=1), mapfile)
+        return directory / VIRTUAL_MAPFILE
+    if _is_installed(mapfile, AFTER):
+        map_path = Street(LENGTH_M, waypoints=2).write_map(directory)
+        report = str(directory / "drive.json")
+        complete = with_vehicle(installed(AFTER), map_path, length=LENGTH_M, report=report)
+        return write(complete, directory / "ros_lite.yaml")
+    return mapfile
 
 
 def _is_installed(mapfile: Path, name: str) -> bool:

@@ -17,6 +17,7 @@ from rmw_manycore_py.bench.predict.errors import MappingError, Order, error_of, 
 from rmw_manycore_py.bench.predict.halves import PartErrors, Parts, parts_of
 from rmw_manycore_py.bench.predict.reports import ReportedChain, reported_chains
 from rmw_manycore_py.bench.predict.runs import Compared, Plan, compared
+from rmw_manycore_py.cli.bench.driven import driven
 from rmw_manycore_py.cli.bench.options import mapping_runs_options
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
@@ -26,7 +27,7 @@ from rmw_manycore_py.mapfile.installed import find_mapfile
 from rmw_manycore_py.profile.files import load
 
 _PARTS_S = 20.0  # simulated
-APPLICATIONS = ("autoware_reference", "image_pipeline")
+APPLICATIONS = ("autoware_reference", "image_pipeline", "whill")
 
 
 @click.command(
@@ -66,8 +67,9 @@ def command(
 ) -> None:
     """Compare predictions with measurements.
 
-    Records a profile of each MAPFILE, by default of autoware_reference and image_pipeline, runs
-    its nodes on random cores and host CPUs, and predicts these runs from the profile.
+    Records a profile of each MAPFILE, by default of autoware_reference, image_pipeline and whill
+    with its laptop as a node, runs its nodes on random cores and host CPUs, and predicts these
+    runs from the profile.
     """
     require(SIMPY)
     progress = Console(stderr=True)
@@ -77,9 +79,11 @@ def command(
             mapfile = find_mapfile(name)
             if mapfile is None:
                 raise ManycoreError(f"there is no mapfile {name}", EXIT_BAD_INPUT)
-            directory = output / mapfile.stem
-            plan = Plan(mapfile, directory, mappings, repetitions, duration_s, seed)
-            found[plan.name] = compared(plan, status.update)
+            directory = output.absolute() / mapfile.stem
+            directory.mkdir(parents=True, exist_ok=True)
+            complete = driven(mapfile, directory)
+            plan = Plan(complete, directory, mappings, repetitions, duration_s, seed)
+            found[mapfile.stem] = compared(plan, status.update)
         chains = reported_chains(report, seed) if report else []
         halves = _parts(*parts, seed) if parts else None
     rows = {name: _row(of) for name, of in found.items()}
@@ -121,11 +125,14 @@ def _row(mappings: Sequence[Compared]) -> dict[str, Any]:
 def _summary(errors: Sequence[MappingError]) -> dict[str, Any]:
     p50 = [abs(error) for one in errors for error in one.p50]
     p99 = [abs(error) for one in errors for error in one.p99]
+    repeated = [abs(error) for one in errors for error in one.repeated]
     return {
         "mappings": len(errors),
         "p50_median": median(p50) if p50 else None,
         "p50_max": max(p50, default=None),
         "p99_median": median(p99) if p99 else None,
+        "repeated_median": median(repeated) if repeated else None,
+        "repeated_max": max(repeated, default=None),
         "load_points_max": max((one.load_points for one in errors), default=None),
     }
 
@@ -156,7 +163,9 @@ def _show(name: str, mappings: Sequence[Compared]) -> None:
         found = _summary(chosen)
         echo(
             f"{label} ({found['mappings']}): p50 {_percent(found['p50_median'])} in the median, "
-            f"{_percent(found['p50_max'])} at most; p99 {_percent(found['p99_median'])}"
+            f"{_percent(found['p50_max'])} at most; p99 {_percent(found['p99_median'])}; "
+            f"a run from the others: p50 {_percent(found['repeated_median'])}, "
+            f"{_percent(found['repeated_max'])} at most"
         )
     echo(_order_text(order_of(mappings)))
 

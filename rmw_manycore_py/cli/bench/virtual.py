@@ -93,10 +93,12 @@ def command(
         raise click.UsageError("--chains needs --profile.")
     found = []
     chains: list[ComparedChain] = []
-    with driven(mapfile, native=native) as complete, TemporaryDirectory() as directory:
+    with TemporaryDirectory() as name:
+        directory = Path(name)
+        complete = driven(mapfile, directory, native=native)
         options: list[str] = ["--instant"]
         if profile is not None:
-            taken = _of_medians(profile, Path(directory)) if with_chains else profile
+            taken = _of_medians(profile, directory) if with_chains else profile
             options = ["--profile", str(taken), "--platform", platform_name, "--seed", str(seed)]
         options += [word for kill in kills for word in ("--kill", kill)]
         for one in runs_of(complete, options, runs, duration_s, timeout):

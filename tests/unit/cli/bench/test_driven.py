@@ -23,21 +23,19 @@ def installed(name: str) -> Path:
 
 @pytest.mark.parametrize("name", ["ros_lite.map", "whill.yaml"])
 def test_only_the_installed_mapfile_gets_its_vehicle(name: str, tmp_path: Path) -> None:
-    copy = tmp_path / name
+    copy, directory = tmp_path / name, tmp_path / "complete"
+    directory.mkdir()
     copy.write_bytes(installed(name).read_bytes())
-    with driven(copy) as complete:
-        assert complete != copy
+    assert driven(copy, directory) != copy
     copy.write_text(copy.read_text() + "\n# ours\n")
-    with driven(copy) as complete:
-        assert complete == copy
+    assert driven(copy, directory) == copy
 
 
-def test_native_nodes_keep_their_places_and_topics() -> None:
+def test_native_nodes_keep_their_places_and_topics(tmp_path: Path) -> None:
     ordinary = check(installed("autoware_reference"))
-    with driven(installed("autoware_reference"), native=True) as complete:
-        native = check(complete)
+    native = check(driven(installed("autoware_reference"), tmp_path, native=True))
     assert [(node.name, node.cluster, node.core) for node in native.nodes] == [
         (node.name, node.cluster, node.core) for node in ordinary.nodes
     ]
-    with pytest.raises(click.UsageError), driven(installed("talker_listener"), native=True):
-        pass
+    with pytest.raises(click.UsageError):
+        driven(installed("talker_listener"), tmp_path, native=True)
