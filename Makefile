@@ -6,7 +6,7 @@ VENV := .venv/bin
 INSTALLED := build/install
 JOBS ?= $(shell nproc)
 # Tests in parallel: most wait most of the time, but each needs memory and a few ROS domains.
-TEST_JOBS ?= $(shell n=$$((2 * $$(nproc) + 1)); echo $$((n < 8 ? n : 8)))
+TEST_JOBS ?= $(shell n=$$((3 * $$(nproc))); echo $$((n < 8 ? n : 8)))
 # Long tests work most of the time, and some drive in real time: with three at once some are late.
 LONG_TEST_JOBS ?= $(shell nproc)
 # These tests cover platform, transport and scan matcher, so they need no ROS.

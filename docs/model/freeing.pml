@@ -13,7 +13,7 @@
  * predecessor may have died between the two stores. A subscription of a dead process that is not
  * closed yet is closed by its reaper, which may get the lock later.
  *
- * RUN MESSAGES=1 KILLS=3
+ * RUN MESSAGES=1 KILLS=3 (long)
  * RUN MESSAGES=2 KILLS=1
  * BUG 1: freed without waiting for the phases
  * BUG 2: publisher: no fence between phase and the load of changes

@@ -10,7 +10,7 @@
  * more; reader 0 may be killed at any step, and is then reaped.
  *
  * RUN READERS=1
- * RUN READERS=2
+ * RUN READERS=2 (long)
  * BUG 1: no fence between reading and the load of number (reader)
  * BUG 2: no fence between clearing number and the load of reading (publisher)
  * BUG 3: number cleared after the load of reading

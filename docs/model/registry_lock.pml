@@ -16,7 +16,7 @@
  * ended. A waiting thread re-checks the owner, so no wake-up is modelled. Memory is sequentially
  * consistent: each store on which another thread relies is a locked instruction.
  *
- * RUN GUEST=0 TWO=0
+ * RUN GUEST=0 TWO=0 (long)
  * RUN GUEST=1 TWO=0
  * RUN GUEST=0 TWO=1 (long)
  * BUG 1: all take the lock from one badge, so the badge is the lock, as a plain robust mutex is

@@ -11,9 +11,9 @@
  * GRAPH=1: the entities are those of which the notifier first looks whether any thread of the
  * process has ever watched one (Registry::graph_changed, Waiters::watch_graph).
  *
- * RUN GRAPH=0 OWN=0
+ * RUN GRAPH=0 OWN=0 (long)
  * RUN GRAPH=0 OWN=1
- * RUN GRAPH=1 OWN=1
+ * RUN GRAPH=1 OWN=1 (long)
  *
  * BUG 1: no fence between epoch and the load of sleepers
  * BUG 2: no fence between sleepers and the comparison of the epoch

@@ -78,7 +78,7 @@ def test_a_contender_that_does_not_exist_is_an_error() -> None:
         ("rmw", "round-trip", *OWN),
         ("rmw", "round-trip", *OTHERS),
         ("rmw", "first-message"),
-        ("copies", *COPIES),
+        pytest.param(("copies", *COPIES), marks=pytest.mark.stress),
         ("fields",),
         ("rclpy", *RCLPY),
         ("startup", *STARTUP),
@@ -197,7 +197,7 @@ def test_simulated_time_crosses_the_bridge() -> None:
     assert comes_once(is_received)
 
 
-@pytest.mark.long
+@pytest.mark.stress
 def test_simulated_time_moves_the_clocks_of_rclpy_nodes() -> None:
     rows = run_bench("scale", "--only", "node with use_sim_time per time it gets")["results"]
     assert {row["at"] for row in rows} == {5}
@@ -267,7 +267,7 @@ def test_the_skeleton_of_a_profile_is_measured(tmp_path: Path) -> None:
     assert all(median > 0 for question, median in medians.items() if question not in silent)
 
 
-@pytest.mark.long
+@pytest.mark.stress
 def test_scan_matching_is_measured_alone_and_split() -> None:
     report = run_bench("ndt", "--only", "rmw_manycore")
     units = {result["unit"] for result in report["results"]}
@@ -316,7 +316,7 @@ def test_a_plot_needs_a_place() -> None:
     assert "--output" in result.stderr
 
 
-@pytest.mark.long
+@pytest.mark.stress
 def test_bridge() -> None:
     report = run_bench("bridge", *BRIDGE)
     assert {result["contender"] for result in report["results"]} >= {"bridged", FAST_DDS_AND_OURS}

@@ -210,7 +210,7 @@ def test_motion_of_the_reference(start, offload, street):
     assert "REFERENCE's motion with 5% error" in figures["guesses"]
 
 
-@pytest.mark.long
+@pytest.mark.stress
 def test_a_drive_with_motion_distortion_at_twice_its_rate(start, platform, tmp_path):
     """The LiDAR turns faster, as the vehicle drives faster: deskewing still fits.
 
@@ -372,7 +372,7 @@ def test_a_recorded_drive_in_closed_loop(start, offload):
 
 
 @needs_data
-@pytest.mark.long
+@pytest.mark.stress
 def test_a_recorded_drive_with_the_whole_stack(start, platform, tmp_path):
     """The same recording; the sensor also moves sideways, which the speed does not contain.
 

@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """The formal models of the data path hold, and each seeded bug is found.
 
-Searches of half a minute are left to `make stress`.
+Searches of some seconds are left to `make stress`.
 """
 
 from __future__ import annotations
