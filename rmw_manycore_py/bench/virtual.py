@@ -135,12 +135,17 @@ def _events(output: str) -> Iterator[dict[str, str]]:
 def _printed(output: str, end_ns: int) -> list[str]:
     """Return the lines of each node; those of several nodes mix by chance.
 
-    What nodes log after the end is of the wall clock: by their endings, one after the other.
+    What nodes log after the end is of the wall clock, with what rcl says of it: by their endings,
+    one after the other.
     """
     lines: dict[str, list[str]] = {}
+    ended = set[str]()
     for event in _events(output):
-        if event["event"] == "output" and _stamp_ns(event["line"]) <= end_ns:
-            lines.setdefault(event["node"], []).append(event["line"])
+        if event["event"] == "output":
+            if _stamp_ns(event["line"]) > end_ns:
+                ended.add(event["node"])
+            if event["node"] not in ended:
+                lines.setdefault(event["node"], []).append(event["line"])
     return [f"{node} prints {line}" for node in sorted(lines) for line in lines[node]]
 
 

@@ -18,6 +18,7 @@ def test_lines_after_the_end_are_left_out() -> None:
         "no stamp",
         "[INFO] [1000000004.999999999] [node]: in time",
         "[WARN] [1000000005.000000001] [node]: while the others end",
+        "what rcl says of that",
     ]
     output = "\n".join(json.dumps({"event": "output", "node": "a", "line": line}) for line in lines)
     assert _printed(output, 10**18 + 5 * 10**9) == [f"a prints {line}" for line in lines[:2]]
