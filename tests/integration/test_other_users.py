@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from support import IS_MANYCORE, TIMEOUT_S
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
 from support.processes.commands import example_command, manycore_command
+from support.processes.inspection import receive_threads_of
 from support.processes.own_shm import can_mount, own_shm_command
 from support.processes.platforms import PLATFORMS, environment
 from support.processes.program import Program
@@ -74,9 +75,15 @@ def give_away(directory: Path) -> None:
 def test_the_platform_of_another_user_is_refused(
     talker: Program, manycore: Manycore, platform: str, tmp_path: Path, kind: str
 ) -> None:
-    """The other user could truncate its segments, which would end all that map them."""
+    """The other user could truncate its segments, which would end all that map them.
+
+    Its receive threads end with its last node, and remove nothing.
+    """
     assert platform in manycore("status").stdout
-    shm = Path(f"/proc/{talker.pid}/root/dev/shm")
+    receive_threads = receive_threads_of(platform)
+    assert receive_threads
+    shm_fd = os.open(f"/proc/{talker.pid}/root/dev/shm", os.O_RDONLY)  # outlives the talker
+    shm = Path(f"/proc/self/fd/{shm_fd}")
     user_directory = theirs = shm / PLATFORMS.name
     if kind == "link":
         theirs = shm / "theirs"
@@ -89,7 +96,11 @@ def test_the_platform_of_another_user_is_refused(
         answer = manycore(*words)
         assert (answer.returncode, answer.stdout) == (1, ""), words
         assert answer.stderr.startswith(f"manycore: {REFUSAL}"), words
+    talker.kill()
+    for pid in receive_threads:
+        wait_until(lambda pid=pid: not Path(f"/proc/{pid}").exists(), f"{pid} has ended")
     assert sorted(theirs.rglob("*")) == files
+    os.close(shm_fd)
 
 
 @pytest.mark.parametrize("verb", ["status", "bridge status", "clean"])

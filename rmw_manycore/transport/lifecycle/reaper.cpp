@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "platform/os_process.hpp"
+#include "platform/private_directory.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 #include "transport/lifecycle/trace_saver.hpp"
 #include "transport/matching/sweeping.hpp"
@@ -50,12 +51,25 @@ void drain(const FileDescriptor & descriptor) {
   }
 }
 
+/// True if another user's directory, or a link, lies where one of this user was.
+bool is_refused(const std::string & directory) {
+  try {
+    PrivateDirectory::open(directory);
+    return false;
+  } catch (const Error & error) {
+    return error.code() == ErrorCode::permission;
+  }
+}
+
 /// Removes the platform if no process uses it. True if this receive thread has nothing left to
 /// serve.
 bool end_if_unused(Registry & registry) {
   if (access(registry.paths().user_directory.c_str(), F_OK) != 0) {
     note_removal(registry);
     return true;
+  }
+  if (is_refused(registry.paths().user_directory) || is_refused(registry.paths().directory)) {
+    return !is_in_use(registry);  // what lies there is not ours to remove
   }
   bool ends = false;
   under_join_lock(registry.paths(), [&] {
