@@ -317,6 +317,7 @@ class CounterFile:
     def close(self) -> None:
         """Release the lock; the mapping is freed with the last row."""
         if self._file is not None:
+            fcntl.flock(self._file, fcntl.LOCK_UN)  # the mapping has a descriptor of its own
             self._file.close()
 
 

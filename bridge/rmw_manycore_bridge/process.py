@@ -12,12 +12,13 @@ import zlib
 from collections.abc import Callable, Iterable
 from functools import partial
 from importlib import import_module
+from pathlib import Path
 
-from rmw_manycore_bridge.counters import CounterFile, status_path, take_pattern_files
+from rmw_manycore_bridge.counters import CounterFile, is_locked, status_path, take_pattern_files
 from rmw_manycore_bridge.engines import load_engine
 from rmw_manycore_bridge.inside import NODE_PREFIX, Inside
 from rmw_manycore_bridge.lane import Lanes
-from rmw_manycore_bridge.outside.interface import Joining, Outside
+from rmw_manycore_bridge.outside.interface import Joining, Outside, OutsideError
 from rmw_manycore_bridge.outside.loop import Loop, Mover
 from rmw_manycore_bridge.sides import OwnPublishers, Sides
 from rmw_manycore_bridge.topic_role import TopicRole
@@ -40,12 +41,13 @@ class BridgeProcess:
         patterns = [route for route in of_lane if route.is_pattern]
         routes = [*plan.topics(direction), *services, *patterns]
         stem = plan.outside.stem(direction)
+        path = status_path(plan.platform, stem, lane)
+        _require_alone(path)
         node_name = f"{node_stem(plan)}_{direction}{lane or ''}"
         self._plan = plan
         self._failed = os.eventfd(0)  # readable after a thread has failed
         self._inside = Inside(plan, core, f"{NODE_PREFIX}{stem}{lane or ''}", self._graphs_changed)
         self._before = take_pattern_files(plan.platform, stem, lane)
-        path = status_path(plan.platform, stem, lane)
         engine = load_engine(plan.outside.engine)
         is_later = direction == "inward" and path.exists()
         engine.prepare(path.with_name(f"profile-{stem}-{lane}.xml"), is_later)
@@ -133,6 +135,15 @@ def mover_class(route: Route) -> Callable[..., Mover]:
     module = import_module(f"rmw_manycore_bridge.{kind}_{way}")
     found: Callable[..., Mover] = getattr(module, f"{way.title()}{kind.title()}")
     return found
+
+
+def _require_alone(path: Path) -> None:
+    """Refuse a second process with the counter file: what crosses would cross twice, and echo."""
+    if is_locked(path) and (counters := CounterFile.open(path)) is not None:
+        raise OutsideError(
+            f"process {counters.pid} bridges this platform already: stop it, or name all that "
+            "crosses in one file"
+        )
 
 
 def _report(loops: Iterable[Loop]) -> int:

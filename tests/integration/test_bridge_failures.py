@@ -17,7 +17,7 @@ from rmw_manycore_bridge.status import status
 from rmw_manycore_bridge.time_slice import SLICE_NS, time_slice_ns
 from rmw_manycore_py.platform.topology import HostCpu, as_host_cpu
 from rmw_manycore_py.routes.plan import Plan
-from rmw_manycore_py.routes.route import arranged
+from rmw_manycore_py.routes.route import DIRECTIONS, arranged
 from support import IS_MANYCORE, MAPFILES, TESTS, TIMEOUT_S, wait_until
 from support.nodes.bridging import OUTSIDE, Bridge
 from support.nodes.speakers import say
@@ -220,6 +220,18 @@ def test_a_loop_is_refused(start, tmp_path, platform) -> None:
     bridge = start(manycore_command("bridge", config))
     assert bridge.wait() == 2
     assert "expected two different domains, found 2 on both sides" in bridge.output
+
+
+def test_a_second_bridge_of_a_platform_is_refused(bridge) -> None:
+    """Both would pass on each message, and take what the other one passes on for another's."""
+    routes = bridge.route("inward", "/chat"), bridge.route("outward", "/chat")
+    first = bridge.run(*routes)
+    for way in DIRECTIONS:
+        wait_until(lambda way=way: bridge.row(way, "/chat"), "it runs")
+    for way, second in bridge.run(*routes).items():
+        second.wait_for(f"^process {first[way].pid} bridges this platform already: stop it, or")
+        assert second.wait() == 1
+        assert bridge.row(way, "/chat")["pid"] == first[way].pid
 
 
 def test_two_platforms_meet_outside_only(start, platform, bridge) -> None:
