@@ -6,15 +6,18 @@ from __future__ import annotations
 import json
 import sys
 from collections import defaultdict
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
 import pytest
 
+from support import wait_until
 from support.installs.installing import Installation, pack_wheel
 from support.nodes.bridging import Bridge
 from support.peers.programs import forked_example, forked_manycore
 from support.processes.commands import manycore_command
+from support.processes.platforms import leftovers, unique_platform
 
 
 @pytest.fixture(scope="session")
@@ -33,6 +36,14 @@ def installation(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Insta
 def bridge(start, platform) -> Bridge:
     """Return the test's bridge, which starts nodes inside and outside."""
     return Bridge(start, platform)
+
+
+@pytest.fixture
+def other_platform() -> Iterator[str]:
+    """Return the name of a second platform, which leaves nothing."""
+    name = unique_platform()
+    yield name
+    wait_until(lambda: not leftovers(name), f"{name} leaves nothing in /dev/shm")
 
 
 @pytest.fixture

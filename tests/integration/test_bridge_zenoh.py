@@ -15,7 +15,7 @@ from rmw_manycore_py.routes.plan import Plan
 from support import IS_MANYCORE, wait_until
 from support.nodes.bridging import STRING, ZenohBridge
 from support.nodes.ros import announce, peer_node, spin_until, type_of
-from support.nodes.speakers import flood, hear, qos, say
+from support.nodes.speakers import count_up, flood, hear, qos, say
 from support.nodes.zenoh_peers import (
     hear_latched,
     locator,
@@ -91,6 +91,22 @@ def test_topics_cross_both_ways_without_an_echo(zenoh) -> None:
         texts = re.findall(r"^heard (number \d+|again \d+)", side.output, re.MULTILINE)
         assert len(texts) == len(set(texts))
     assert zenoh.row("inward", "/chat")["lost"] == zenoh.row("outward", "/chat")["lost"] == 0
+
+
+def test_two_bridges_in_one_domain_make_no_echo(other_platform, zenoh) -> None:
+    """Each passes on what the nodes of its own platform publish, and nothing twice."""
+    there = zenoh.beside(other_platform)
+    for side in (zenoh, there):
+        side.run(side.route("inward", "/chat"), side.route("outward", "/chat"))
+    hearers = [zenoh.inside(hear, "/chat", {}), there.inside(hear, "/chat", {})]
+    hearers.append(zenoh.outside(sdk_hear, "/chat"))
+    zenoh.inside(count_up, "/chat", {}, 0.05)
+    there.inside(say, "/chat", {}, 0.05)
+    for hearer in hearers:
+        for text in (r"\d+", r"again \d+") * 10:
+            hearer.wait_for(rf"^heard {text}")
+        texts = re.findall(r"^heard (\d+|again \d+)", hearer.output, re.MULTILINE)
+        assert len(texts) == len(set(texts))
 
 
 def test_no_reliable_message_is_lost(zenoh) -> None:

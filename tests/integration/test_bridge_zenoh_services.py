@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import re
 import signal
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -19,7 +18,6 @@ from support.nodes.ros import announce, peer_node, spin_until
 from support.nodes.serving import FIBONACCI, SET_BOOL, call, count, send_goal, serve
 from support.nodes.zenoh_actions import sdk_count, sdk_send_goal
 from support.nodes.zenoh_peers import ask, sdk_call, sdk_list, sdk_serve
-from support.processes.platforms import leftovers, unique_platform
 
 pytestmark = [
     pytest.mark.integration,
@@ -105,13 +103,6 @@ def test_a_gateway_of_services_the_other_way(zenoh, bridge) -> None:
     bridge.run(bridge.route("inward", "/lamp", SET_BOOL))
     zenoh.outside(sdk_serve, True).wait_for("^serving$")
     bridge.outside(call, 1).wait_for("^answer True served$")
-
-
-@pytest.fixture
-def other_platform() -> Iterator[str]:
-    name = unique_platform()
-    yield name
-    wait_until(lambda: not leftovers(name), f"{name} leaves nothing in /dev/shm")
 
 
 def test_an_action_between_two_platforms(other_platform, zenoh) -> None:

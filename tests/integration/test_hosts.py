@@ -3,17 +3,25 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
+import shutil
 import signal
 import socket
 from collections.abc import Callable, Iterator
+from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
+from rmw_manycore_bridge.outside.types import hash_of
+from rmw_manycore_py.ros.ament import package_prefix
 from support import IS_MANYCORE, wait_until
 from support.nodes.parted import HEARD, HOSTS, Parted
 from support.nodes.serving import call, count, send_goal, serve
 from support.nodes.speakers import (
+    STRING,
     count_as_many,
     flood,
     hear,
@@ -36,6 +44,7 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="hosts are part of rmw_manycore"),
 ]
 
+OTHER_HASH = "RIHS01_" + "5" * 64
 LATCHED = {"durability": "transient_local", "depth": 2}
 
 
@@ -178,6 +187,69 @@ def test_nodes_and_publishers_of_other_hosts(hosts) -> None:
     assert {"Node name: one", "Node name: two"} <= {*told}
     assert told.count("Durability: TRANSIENT_LOCAL") == 1
     assert lines("node", "info", "/talker")[0] == "/talker"
+
+
+def test_commands_show_both_hosts(hosts, tmp_path) -> None:
+    """On each one: what nodes there are, their load, their picture, and what they publish."""
+    hosts.run_all()
+    names = {"/talker", "/listener"}
+
+    def has_both(host: str) -> bool:
+        return names == {*hosts.command(host, "node", "list").split()}
+
+    for host in HOSTS:
+        wait_until(lambda host=host: has_both(host), "the nodes of both are there")
+        picture = tmp_path / f"{host}.svg"
+        hosts.command(host, "view", "--once", "-o", str(picture))
+        drawn = "".join(ElementTree.parse(picture).getroot().itertext())
+        load = json.loads(hosts.command(host, "top", "--count", "1", "--json"))
+        assert names <= {node["node"] for node in load["nodes"]}
+        shown = hosts.command(host, "status", "--platform", hosts.platforms[host])
+        for name in names:
+            assert name in drawn
+            assert name in shown
+        assert "/chatter" in drawn
+        assert "/chatter" in hosts.command(host, "topic", "list").split()
+        assert "Hello World" in hosts.command(host, "topic", "echo", "--once", "/chatter")
+        assert "/talker/get_parameters" in hosts.command(host, "service", "list").split()
+    for verb, line in (("hz", "average rate: "), ("bw", "B/s from ")):
+        hosts.tool("b", "topic", verb, "/chatter").wait_for(line)
+    echo = hosts.tool("a", "topic", "echo", "--once", "/said", STRING)
+    hosts.command("b", "topic", "pub", "--once", "/said", STRING, "data: there")
+    echo.wait_for("^data: there$")
+
+
+def another_definition(directory: Path) -> str:
+    """Return a prefix of packages in which std_msgs/msg/String has another hash."""
+    prefix = package_prefix("std_msgs")
+    assert prefix is not None
+    shutil.copytree(prefix / "share/std_msgs/msg", directory / "share/std_msgs/msg")
+    entry = directory / "share/ament_index/resource_index/packages/std_msgs"
+    entry.parent.mkdir(parents=True)
+    entry.touch()
+    file = directory / "share/std_msgs/msg/String.json"
+    file.write_text(file.read_text().replace(hash_of(STRING), OTHER_HASH))
+    return f"{directory}:{prefix}"
+
+
+def test_a_type_of_another_definition_on_a_host(hosts, tmp_path) -> None:
+    """Its topics do not cross; each side names the hash of the other. All else crosses."""
+    told = {"a": OTHER_HASH, "b": hash_of(STRING)}
+    runs = {"a": hosts.run("a")}
+    runs["b"] = hosts.run("b", AMENT_PREFIX_PATH=another_definition(tmp_path / "other"))
+    for run in runs.values():
+        run.wait_for("connected to another host")
+    hosts.node("a", serve, True)
+    hosts.node("b", call, 1).wait_for("^answer True served$")
+    hosts.node("b", say_as, "two", "/told", {})
+    hosts.node("a", hear, "/told", {}).wait_for("^listening$")
+    for host, topic in (("a", "/told"), ("b", "/chatter")):
+        reason = f"is {STRING} of another definition ({told[host][:19]}..) outside, not {STRING}"
+        runs[host].wait_for(re.escape(f"{topic}: {reason}"))
+        row = hosts.row(host, "inward", topic)
+        assert (row["state"], row["reason"], row["messages"]) == ("failed", reason, 0)
+    assert hosts.row("a", "outward", "/chatter")["messages"] == 0
+    assert "I heard" not in runs["b"].output
 
 
 def test_many_publishers_of_a_topic(hosts) -> None:

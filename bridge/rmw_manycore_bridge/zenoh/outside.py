@@ -67,11 +67,15 @@ class Zenoh(Outside):
 
     def require_type(self, name: str) -> None:
         """Raise ImportError unless the type's hash is known, which keys contain."""
-        if name and not types.hash_of(name):
-            package = name.partition("/")[0]
-            raise ImportError(
-                f"type {name} is not installed: there is no package '{package}' with its hash"
-            )
+        if not name or types.hash_of(name):
+            return
+        here, _, other = name.partition(" ")
+        if other:  # see `_type_of`
+            raise ImportError(f"is {name} outside, not {here}")
+        package = name.partition("/")[0]
+        raise ImportError(
+            f"type {name} is not installed: there is no package '{package}' with its hash"
+        )
 
     def publishers(self, route: Route, is_wanted: bool) -> list[Endpoint]:
         """Return the publishers of a topic; one without a token once it is heard."""

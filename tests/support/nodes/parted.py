@@ -9,6 +9,7 @@ from typing import Any
 
 from rmw_manycore_bridge.status import status
 from rmw_manycore_py.native._transport import Platform
+from support.peers.programs import forked_manycore
 from support.processes.commands import manycore_command, peer_command
 from support.processes.platforms import unique_platform
 from support.processes.program import Program
@@ -62,10 +63,13 @@ class Parted:
         command = peer_command(function, *arguments)
         return self._start(command, MANYCORE_PLATFORM=self.platforms[host])
 
+    def tool(self, host: str, *words: str) -> Program:
+        """Start `manycore` on a host."""
+        return self._start(forked_manycore(*words), MANYCORE_PLATFORM=self.platforms[host])
+
     def command(self, host: str, *words: str) -> str:
         """Return what `manycore` prints on a host."""
-        platform = self.platforms[host]
-        program = self._start([*map(str, manycore_command(*words))], MANYCORE_PLATFORM=platform)
+        program = self.tool(host, *words)
         assert program.wait() == 0, program
         return program.output
 
