@@ -138,7 +138,7 @@ class Topic(Mover):
         elif role.name == "heir":
             data = ctypes.string_at(address, size)
             role.hold(Held(publisher, number, data, sent_ns))
-        elif not role.repeats(publisher, number) and not self._drops_repeated(publisher, number):
+        elif not role.repeats(publisher, number) and not self.drops_repeated(publisher, number):
             self._note(publisher, number)
             self._pass_on(address, size, sent_ns, publisher, number)
 
@@ -146,7 +146,7 @@ class Topic(Mover):
         """Return whether a message with that gid was published by this bridge."""
         return self._sides.own.has(publisher)
 
-    def _drops_repeated(self, publisher: bytes, number: int) -> bool:
+    def drops_repeated(self, publisher: bytes, number: int) -> bool:
         """Count a message forwarded before, e.g. by a killed process; return whether to drop it.
 
         A new subscription receives latched messages again, and the new publisher needs them for

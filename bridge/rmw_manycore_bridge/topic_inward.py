@@ -26,6 +26,7 @@ class InwardTopic(Topic):
         super().__init__(sides, role)
         # By gid outside; other messages are the bridge's own, which has an empty one.
         self._publishers: dict[bytes, _transport.Publisher] = {}
+        self._published: dict[bytes, int] = {}  # last number of each that stands for another
         self._unnamed: set[bytes] = set()  # gids that are not shown outside
         self._subscription: Subscription | None = None
         self._gaps = Gaps(sides.row)
@@ -49,26 +50,33 @@ class InwardTopic(Topic):
             self._sides.fail(reason)
             return
         offer = common_offer(offers, route.qos)
+        depth = max((e.qos.depth for e in listeners), default=1)
         if self._offer is None or not satisfies(self._offer, offer):
-            self._renew(offer)
+            self._renew(offer, depth)
             # Those whose messages were just forwarded may have appeared meanwhile.
             fitting = self._fitting(self._sides.outside.publishers(route, True))
         if not self._appear(fitting):
             return
         if listeners or route.eager or offer.durability == "transient_local":
-            self._listen(max((e.qos.depth for e in listeners), default=1))
+            self._listen(depth)
         else:
             self.stop_listening()
             self._gaps = Gaps(self._sides.row)  # untaken messages are not lost
             self._sides.row.rest()
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
-    def _renew(self, offer: Qos) -> None:
-        """Forward unread messages, then go on with another QoS; what stands for others stays."""
+    def _renew(self, offer: Qos, depth: int) -> None:
+        """Go on with another QoS; what stands for others stays.
+
+        The next subscription begins before this one ends; what both receive is forwarded once.
+        """
+        following = None if self._subscription is None else self._subscribe(offer, depth)
         self.take(self._depth)
         self.stop_listening()
         self._publishers.pop(_OWN, None)
         self._offer = offer
+        if following is not None:
+            self._begin(following, offer, depth)
 
     def _fitting(self, publishers: Sequence[Endpoint]) -> list[Endpoint]:
         return [p for p in publishers if p.type == self._sides.route.type]
@@ -78,6 +86,7 @@ class InwardTopic(Topic):
         named = {one.gid: one for one in publishers if one.node}
         for gid in self._publishers.keys() - named.keys() - {_OWN}:
             del self._publishers[gid]
+            self._published.pop(gid, None)
         self._unnamed.clear()
         try:
             for gid in named.keys() - self._publishers.keys():
@@ -114,9 +123,14 @@ class InwardTopic(Topic):
         if self._subscription is not None:
             return
         assert self._offer is not None
-        request = request_for(self._offer, depth)
-        self._subscription = self._sides.outside.subscribe(self._sides.route, request)
-        self._depth = request.depth
+        self._begin(self._subscribe(self._offer, depth), self._offer, depth)
+
+    def _subscribe(self, offer: Qos, depth: int) -> Subscription:
+        return self._sides.outside.subscribe(self._sides.route, request_for(offer, depth))
+
+    def _begin(self, subscription: Subscription, offer: Qos, depth: int) -> None:
+        self._subscription = subscription
+        self._depth = request_for(offer, depth).depth
         self.resume()
 
     def stop_listening(self) -> None:
@@ -141,10 +155,19 @@ class InwardTopic(Topic):
                 return
             self.arrived(taken.publisher, taken.number, taken.address, taken.size, taken.sent_ns)
 
-    def send(self, address: int, size: int, sent_ns: int, publisher: bytes, _: int) -> None:
+    def send(self, address: int, size: int, sent_ns: int, publisher: bytes, number: int) -> None:
         """Publish inside with the source timestamp of the publisher outside."""
         found = self._publishers.get(publisher) or self._late(publisher)
         found.publish_from(address, size, sent_ns)
+        if publisher in self._publishers:
+            self._published[publisher] = number
+
+    def drops_repeated(self, publisher: bytes, number: int) -> bool:
+        """Drop latched messages, too, where the publisher that stands for theirs has them."""
+        if super().drops_repeated(publisher, number):
+            return True
+        last = self._published.get(publisher)
+        return last is not None and number <= last
 
     def _late(self, publisher: bytes) -> _transport.Publisher:
         """Return the publisher here of one that is not known yet, or that has ended."""
@@ -186,4 +209,5 @@ class InwardTopic(Topic):
         self.stop_listening()
         self._offer = None
         self._publishers.clear()
+        self._published.clear()
         self._unnamed.clear()

@@ -84,7 +84,11 @@ class OutwardTopic(Topic):
             self.due_s = time.monotonic() + STEP_S
 
     def _renew(self, offer: Qos) -> None:
-        """Forward unread messages, then publish with another QoS; what is shown outside stays."""
+        """Publish with another QoS; what is shown outside stays.
+
+        The next subscription begins before this one ends; what both receive is forwarded once.
+        """
+        following = None if self._subscription is None else self._subscribe(offer)
         self.take(self._depth)
         self.stop_listening()
         if self._publisher is not None:
@@ -92,16 +96,26 @@ class OutwardTopic(Topic):
         self._publisher = self._sides.outside.publish(self._sides.route, offer)
         self._sides.row.add_gid(self._publisher.gid)
         self._offer = offer
+        if following is not None:
+            self._begin(following, offer)
 
     def _listen(self) -> None:
         if self._subscription is not None or self._offer is None or self._publisher is None:
             return
-        self._publisher.resume()
-        route, request = self._sides.route, request_for(self._offer, 1)
-        self._subscription = self._sides.inside.process.subscription(
-            route.inside, route.type, request, type_hash=types.hash_of(route.type)
+        self._begin(self._subscribe(self._offer), self._offer)
+
+    def _subscribe(self, offer: Qos) -> _transport.Subscription:
+        route = self._sides.route
+        return self._sides.inside.process.subscription(
+            *(route.inside, route.type, request_for(offer, 1)),
+            type_hash=types.hash_of(route.type),
         )
-        self._depth, self._lost = request.depth, 0
+
+    def _begin(self, subscription: _transport.Subscription, offer: Qos) -> None:
+        assert self._publisher is not None
+        self._publisher.resume()  # what was on its way to a subscription before is lost
+        self._subscription = subscription
+        self._depth, self._lost = request_for(offer, 1).depth, 0
         self._sides.inside.readers.append(self)
 
     def stop_listening(self) -> None:

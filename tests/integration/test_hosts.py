@@ -22,6 +22,7 @@ from support.nodes.parted import HEARD, HOSTS, Parted
 from support.nodes.serving import call, count, send_goal, serve
 from support.nodes.speakers import (
     STRING,
+    count_among_newcomers,
     count_as_many,
     flood,
     hear,
@@ -267,6 +268,33 @@ def test_many_publishers_of_a_topic(hosts) -> None:
 
     assert staying("b") == staying("a")
     assert len(staying("a")) == 101
+
+
+def test_what_is_lost_when_publishers_come_is_counted(hosts) -> None:
+    """Each makes the queues of the links deeper, by other subscriptions."""
+    hosts.run_all()
+    hearer = hosts.node("b", hear_counters, "/counted", 1)
+    hearer.wait_for("^listening$")
+    counter = hosts.node("a", count_among_newcomers, 20, "/counted")
+    hearer.wait_for("^heard all$")
+    counter.wait_for("^all came$")
+    hearer.signal(signal.SIGUSR1)
+    missing, lost = map(int, hearer.wait_for(r"^missing (\d+) lost (\d+)$").groups())
+    rows = hosts.row("a", "outward", "/counted"), hosts.row("b", "inward", "/counted")
+    assert missing <= lost + sum(row["lost"] for row in rows)
+
+
+def test_what_was_latched_crosses_once(hosts) -> None:
+    """Also when another publisher of the topic comes."""
+    hosts.run_all()
+    hearer = hosts.node("b", hear, "/map", LATCHED)
+    hosts.node("a", say, "/map", LATCHED, None, "old", "new")
+    hearer.wait_for("^heard new")
+    hosts.node("a", say, "/map", LATCHED, None, "more")
+    hearer.wait_for("^heard more")
+    hosts.node("a", say, "/map", LATCHED, None, "most")
+    hearer.wait_for("^heard most")
+    assert re.findall(r"^heard (\S+)", hearer.output, re.M) == ["old", "new", "more", "most"]
 
 
 def test_a_topic_published_on_both_hosts(hosts) -> None:

@@ -36,6 +36,8 @@ class Source:
         It leaves out what was published while nothing crossed: a subscription that was there all
         the time counts that as lost. What was lost before the link is counted there.
         """
+        if self.number is not None and number <= self.number:  # latched, forwarded again
+            return self.sent + number - self.number
         self.sent += number - self.number if self.resumes and self.number is not None else 1
         self.number, self.resumes = number, False
         return self.sent

@@ -163,6 +163,22 @@ def count_as_many(count: int, topic: str) -> None:
             process.wait(process.epoch(), 0.1)
 
 
+def count_among_newcomers(count: int, topic: str) -> None:
+    """Publish the numbers from 0, while more and more publishers of the topic come."""
+    from rmw_manycore_py.native import _transport
+
+    with _transport.Process(os.environ["MANYCORE_PLATFORM"], label="counter") as process:
+        own = process.publisher(topic, STRING, _transport.Qos(depth=1000))
+        newcomers = []
+        for number in itertools.count():
+            own.publish(_text(f"counter {number}"))
+            if number % 50 == 49 and len(newcomers) < count:
+                newcomers.append(process.publisher(topic, STRING, _transport.Qos()))
+            if number == 50 * (count + 2):
+                announce("all came")
+            process.wait(process.epoch(), 0.002)
+
+
 def hear_counters(topic: str, count: int) -> None:
     """Print when all counters have been heard anew, and on SIGUSR1 how many numbers are missing.
 
