@@ -1,9 +1,12 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """The transport without ROS: platforms seen, configured and joined."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
+from typing import Any, Generic, TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
 from typing_extensions import Buffer, Self
 
 from rmw_manycore_py.native.enums import (
@@ -17,6 +20,8 @@ from rmw_manycore_py.native.enums import (
     WaitMode,
     ZeroCopy,
 )
+
+Scalar = TypeVar("Scalar", bound=np.number[Any])
 
 class PlatformError(RuntimeError):
     """Something is wrong with a platform; the message says what to do."""
@@ -419,19 +424,34 @@ class Platform:
         trace: TracebackType | None,
     ) -> None: ...
 
-class Loan:
-    """Room for one message in shared memory, until it is published or given back.
+class Loan(Generic[Scalar]):
+    """A message in the making, in shared memory; it is published at the end of its `with` block.
 
-    Writable through the buffer protocol behind the head of the message. What views it, as
-    `memoryview(loan)`, keeps it from being published.
+    An exception inside of the block gives the room back, and nothing is published. Until then the
+    publisher can publish and lend further messages.
     """
 
     def __buffer__(self, flags: int, /) -> memoryview: ...
-    def publish(self) -> int:
-        """Publish the message and return its sequence number; BufferError while it is viewed."""
+    @property
+    def sequence(self) -> int | None:
+        """Sequence number of the published message, from 1; None before."""
 
-    def give_back(self) -> None:
-        """Publish nothing; BufferError while the room is viewed."""
+    @property
+    def array(self) -> NDArray[Scalar]:
+        """The array in shared memory: writable, C-contiguous, aligned, not cleared.
+
+        It must not outlive the `with` block.
+
+        :raises TransportError: if the message was published or given back.
+        """
+
+    def __enter__(self) -> Self: ...
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None: ...
 
 class Publisher:
     """Publishes serialized messages."""
@@ -459,7 +479,9 @@ class Publisher:
     def publish_parts(self, head: bytes, body: Buffer) -> int:
         """Publish a message of two parts, the second contiguous; return its sequence number."""
 
-    def lend(self, head: bytes, body_bytes: int) -> Loan | None:
+    def lend(
+        self, head: bytes, body_bytes: int, shape: tuple[int, ...], dtype: np.dtype[Scalar]
+    ) -> Loan[Scalar] | None:
         """Lend room for a message; None where the topic's records lie in a ring of fixed size."""
 
     def matched(self) -> int:
@@ -468,24 +490,50 @@ class Publisher:
     def close(self) -> None:
         """Close the publisher; whatever is done with it later is a ValueError."""
 
-class Claim:
-    """A record in its place in the topic DSM. The publisher cannot reuse it before `release`.
+class Message(Generic[Scalar]):
+    """A message in shared memory, released at the end of its `with` block.
 
-    A subscription has one claim at a time. What views its memory through the buffer protocol, as
-    `memoryview(claim)`, keeps it claimed.
+    Until then its publisher does not overwrite it, however many messages it publishes. A
+    subscription has one at a time. What views its memory through the buffer protocol, as arrays and
+    `memoryview(message)` do, keeps it from being released.
     """
 
     def __buffer__(self, flags: int, /) -> memoryview: ...
+    @property
+    def array(self) -> NDArray[Scalar]:
+        """The array in shared memory: read-only, with the publisher's shape, C-contiguous.
+
+        It must not outlive the message; use `copy()` to keep it. Elements of 8 bytes are not
+        aligned in CDR: numpy handles them a little more slowly.
+
+        :raises TransportError: if the message was released, or is not an array of this type.
+        """
+
+    def copy(self) -> NDArray[Scalar]:
+        """Return a copy of the array, writable and aligned.
+
+        :raises TransportError: as `array` does.
+        """
+
+    @property
+    def sequence(self) -> int:
+        """Sequence number of its publisher, from 1."""
+
+    @property
+    def source_timestamp_ns(self) -> int:
+        """Time of publication [ns since 1970, CLOCK_REALTIME]."""
+
+    @property
+    def publisher(self) -> bytes:
+        """GID of its publisher, 16 bytes."""
+
+    # Of the record:
     @property
     def address(self) -> int: ...
     @property
     def size(self) -> int: ...
     @property
     def data(self) -> bytes: ...
-    @property
-    def publisher(self) -> bytes:
-        """Gid of the publisher."""
-
     @property
     def client(self) -> bytes:
         """Request or reply: gid of the client's reply subscription."""
@@ -494,14 +542,20 @@ class Claim:
     def number(self) -> int:
         """Request or reply: the client's number of the request."""
 
-    @property
-    def source_timestamp_ns(self) -> int: ...
-    @property
-    def sequence(self) -> int:
-        """Rises by one with each message of the publisher."""
-
     def release(self) -> None:
-        """End the claim; BufferError while something views its memory."""
+        """Release the message's memory to its publisher; idempotent.
+
+        :raises MessageInUseError: if an array still refers to that memory; it is then released
+            with the last such array.
+        """
+
+    def __enter__(self) -> Self: ...
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None: ...
 
 class Subscription:
     """Takes serialized messages."""
@@ -510,7 +564,10 @@ class Subscription:
     def gid(self) -> bytes:
         """Names a client where it is the subscription of its replies, 16 bytes."""
 
-    def claim(self) -> Claim | None:
+    def read_arrays(self, dtype: np.dtype[Any], layout_of: Callable[..., Any]) -> None:
+        """Its messages are arrays; `layout_of` reads their heads, see `multi_array`."""
+
+    def claim(self) -> Message[Any] | None:
         """Return the next record without a copy; BufferError before the last one is released."""
 
     def note_bridged(self) -> None:

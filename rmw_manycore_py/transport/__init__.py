@@ -15,14 +15,13 @@ Arrays travel as std_msgs/msg/Float32MultiArray and its sisters, so ROS 2 nodes,
 and the bridge read and write them too. Neither rclpy nor any other part of ROS is loaded.
 """
 
+from rmw_manycore_py.native._transport import Loan, Message
 from rmw_manycore_py.transport.errors import (
     MessageInUseError,
     TransportError,
     TransportTimeoutError,
 )
-from rmw_manycore_py.transport.loan import Loan
 from rmw_manycore_py.transport.member import Member, join
-from rmw_manycore_py.transport.message import Message
 from rmw_manycore_py.transport.publisher import Publisher
 from rmw_manycore_py.transport.qos import Qos
 from rmw_manycore_py.transport.subscription import Subscription

@@ -13,6 +13,10 @@ IN_USE = (
     "an array of the message is still in use: let go of it inside `with` (del, or work in a "
     "function), or keep message.copy() instead"
 )
+LOAN_IN_USE = (
+    "an array of the loan is still in use, so it is not published: let go of it inside `with` "
+    "(del, or work in a function)"
+)
 # The native module raises ValueError if another thread has closed the object.
 NATIVE_ERRORS = (PlatformError, MemoryError, ValueError, BufferError)
 

@@ -130,24 +130,6 @@ def layout_of(message: Buffer, size_bytes: int, itemsize: int) -> Layout:
         raise _malformed(f"it ends after {size_bytes} bytes") from error
 
 
-class Heads:
-    """Reads the heads of messages, of which one is mostly like the one before."""
-
-    def __init__(self, itemsize: int) -> None:
-        self._itemsize = itemsize
-        self._last: tuple[int, bytes, Layout | None] = (0, b"", None)
-
-    def layout_of(self, message: memoryview) -> Layout:
-        """Return the same as the function."""
-        last_bytes, head, layout = self._last
-        size_bytes = len(message)
-        if layout is not None and size_bytes == last_bytes and message[: len(head)] == head:
-            return layout
-        layout = layout_of(message, size_bytes, self._itemsize)
-        self._last = (size_bytes, bytes(message[: layout.offset_bytes]), layout)
-        return layout
-
-
 def _read(message: Buffer, size_bytes: int, itemsize: int) -> Layout:
     encapsulation = bytes(struct.unpack_from("2s2x", message)[0])
     if encapsulation not in (_LITTLE_ENDIAN, _BIG_ENDIAN):

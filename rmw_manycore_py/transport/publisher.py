@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native._transport import Loan
 from rmw_manycore_py.transport.arguments import Deadline, checked_number
 from rmw_manycore_py.transport.closing import Closing
 from rmw_manycore_py.transport.errors import (
@@ -19,7 +20,6 @@ from rmw_manycore_py.transport.errors import (
     refusal,
     translated,
 )
-from rmw_manycore_py.transport.loan import Loan, array_in
 from rmw_manycore_py.transport.multi_array import Scalar, checked_shape, head_of, room_for
 
 MAX_SUBSCRIPTIONS = 32_768
@@ -85,15 +85,15 @@ class Publisher(Closing, Generic[Scalar]):
         wanted = shape if isinstance(shape, (int, tuple)) else checked_shape(shape)
         sizes, head, body_bytes = room_for(wanted, self.dtype.itemsize)
         try:
-            room = native.lend(head, body_bytes)
+            loan = native.lend(head, body_bytes, sizes, self.dtype)
         except NATIVE_ERRORS as error:
             raise translated(self.topic, error) from error
-        if room is None:
+        if loan is None:
             raise TransportError(
                 f"{self.topic}: its messages lie in a ring of fixed size or are transferred, so no "
                 "room can be lent: use publish()"
             )
-        return Loan(room, array_in(room, sizes, self.dtype))
+        return loan
 
     @property
     def subscriptions(self) -> int:

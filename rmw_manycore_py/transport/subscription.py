@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native._transport import Message
 from rmw_manycore_py.transport.arguments import Deadline
 from rmw_manycore_py.transport.closing import Closing
 from rmw_manycore_py.transport.errors import (
@@ -18,8 +19,7 @@ from rmw_manycore_py.transport.errors import (
     TransportTimeoutError,
     translated,
 )
-from rmw_manycore_py.transport.message import Message
-from rmw_manycore_py.transport.multi_array import Heads, Scalar
+from rmw_manycore_py.transport.multi_array import Scalar, layout_of
 
 
 class Subscription(Closing, Generic[Scalar]):
@@ -45,7 +45,7 @@ class Subscription(Closing, Generic[Scalar]):
         self.dtype = dtype
         self._process = process
         self._native: _transport.Subscription | None = native
-        self._heads = Heads(dtype.itemsize)
+        native.read_arrays(dtype, layout_of)
 
     def __repr__(self) -> str:
         return f"<Subscription to {self.dtype} on {self.topic}>"
@@ -75,10 +75,9 @@ class Subscription(Closing, Generic[Scalar]):
         """Return the next message, or None if there is none; otherwise like `take`."""
         native = self._opened()
         try:
-            claim = native.claim()
+            return native.claim()
         except NATIVE_ERRORS as error:
             raise translated(self.topic, error) from error
-        return None if claim is None else Message(claim, self.dtype, self._heads)
 
     def take_copy(self, timeout_s: float | None = None) -> NDArray[Scalar]:
         """Return a copy of the next message's array; otherwise like `take`."""

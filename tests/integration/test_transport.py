@@ -87,6 +87,13 @@ def test_a_message_stays_while_its_publisher_overwrites(ends: Ends) -> None:
     assert (subscription.lost, subscription.superseded) == (0, 197)
 
 
+def test_arrays_whose_shapes_change(ends: Ends) -> None:
+    publisher, subscription = ends
+    for shape in [(2, 3), (3, 2), (3, 2), (6,), (0, 6), (2, 3)]:
+        publisher.publish(np.ones(shape, np.float32))
+        assert subscription.take_copy(TIMEOUT_S).shape == shape
+
+
 def test_an_array_that_outlives_its_message_stays_whole(ends: Ends) -> None:
     publisher, subscription = ends
     publisher.publish(np.full(1000, 1.0, np.float32))

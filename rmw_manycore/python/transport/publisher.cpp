@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "platform/clock.hpp"
+#include "python/transport/arrays.hpp"
 #include "python/transport/bindings.hpp"
 #include "python/transport/gid.hpp"
 #include "virtual_time/door.hpp"
@@ -65,42 +66,55 @@ PyType_Slot loan_slots[] = {
 }  // namespace
 
 BoundLoan::BoundLoan(
-  std::shared_ptr<SharedPublisher> source, Loan && loan, const nb::bytes & head, size_t body_bytes)
+  std::shared_ptr<SharedPublisher> source, Loan && loan, const nb::bytes & head, size_t body_bytes,
+  nb::object shape, nb::object dtype)
 : source_(std::move(source)),
   loan_(std::move(loan)),
   head_bytes_(head.size()),
-  body_bytes_(body_bytes) {
+  body_bytes_(body_bytes),
+  shape_(std::move(shape)),
+  dtype_(std::move(dtype)) {
   std::memcpy(loan_->data(), head.c_str(), head.size());
 }
 
-uint64_t BoundLoan::publish() {
-  require_unviewed();
+nb::object BoundLoan::array(nb::handle_t<BoundLoan> self) {
+  const auto & loan = *nb::inst_ptr<BoundLoan>(self);
+  if (loan.is_over_) {
+    raise_error("TransportError", nb::str("the loan is over: fill its array inside `with`"));
+  }
+  return array_over(self, loan.dtype_, loan.shape_, loan.body_bytes_ == 0 ? 0 : -1, 0);
+}
+
+void BoundLoan::exit(nb::handle error, nb::handle, nb::handle) {
+  if (std::exchange(is_over_, true)) {
+    return;
+  }
+  if (views_ == 0) {
+    error.is_none() ? publish() : end();
+  } else if (error.is_none()) {
+    raise_in_use("LOAN_IN_USE");
+  }
+}
+
+void BoundLoan::publish() {
   const std::shared_ptr<SharedPublisher> source = source_;
   Loan loan = std::move(*loan_);
   end();
   const nb::gil_scoped_release released;
   const int64_t now_ns = publish_now_ns(source->publisher->slot());
-  return source->publisher->publish(std::move(loan), head_bytes_ + body_bytes_, now_ns);
+  sequence_ = source->publisher->publish(std::move(loan), head_bytes_ + body_bytes_, now_ns);
 }
 
-void BoundLoan::give_back() {
-  require_unviewed();
-  end();
-}
-
-void BoundLoan::require_unviewed() const {
-  if (!loan_) {
-    throw nb::value_error("the room has been published or given back");
-  }
-  if (views_ != 0) {
-    throw nb::buffer_error("the room is still viewed, as by an array");
+void BoundLoan::remove_view() noexcept {
+  if (--views_ == 0 && is_over_) {
+    end();
   }
 }
 
 int BoundLoan::add_view(PyObject * self, Py_buffer * view, int flags) noexcept {
   if (!loan_) {
     view->obj = nullptr;
-    PyErr_SetString(PyExc_ValueError, "the room has been published or given back");
+    PyErr_SetString(PyExc_ValueError, "the loan is over");
     return -1;
   }
   constexpr int is_read_only = 0;
@@ -145,14 +159,19 @@ uint64_t BoundPublisher::publish_parts(const nb::bytes & head, const nb::object 
   return send({{head.c_str(), head.size()}, view.bytes()}, std::nullopt, {});
 }
 
-std::unique_ptr<BoundLoan> BoundPublisher::lend(const nb::bytes & head, size_t body_bytes) {
+std::unique_ptr<BoundLoan> BoundPublisher::lend(
+  const nb::bytes & head, size_t body_bytes, nb::object shape, nb::object dtype) {
   const std::shared_ptr<SharedPublisher> shared = held();
   const size_t size_bytes = head.size() + body_bytes;
   std::optional<Loan> loan = [&] {
     const nb::gil_scoped_release released;
     return shared->publisher->lend(size_bytes);
   }();
-  return loan ? std::make_unique<BoundLoan>(shared, std::move(*loan), head, body_bytes) : nullptr;
+  if (!loan) {
+    return nullptr;
+  }
+  return std::make_unique<BoundLoan>(
+    shared, std::move(*loan), head, body_bytes, std::move(shape), std::move(dtype));
 }
 
 nb::bytes BoundPublisher::gid() const { return to_bytes(held()->publisher->gid()); }
@@ -187,9 +206,13 @@ uint64_t BoundPublisher::send(
 }
 
 void bind_publisher(nb::module_ & module) {
-  nb::class_<BoundLoan>(module, "Loan", nb::type_slots(loan_slots))
-    .def("publish", &BoundLoan::publish)
-    .def("give_back", &BoundLoan::give_back);
+  nb::class_<BoundLoan>(
+    module, "Loan", nb::type_slots(loan_slots), nb::is_generic(),
+    "A message in the making, in shared memory; published at the end of its `with`.")
+    .def_prop_ro("sequence", &BoundLoan::sequence)
+    .def_prop_ro("array", &BoundLoan::array)
+    .def("__enter__", [](nb::handle_t<BoundLoan> self) { return self; })
+    .def("__exit__", &BoundLoan::exit, nb::arg().none(), nb::arg().none(), nb::arg().none());
   nb::class_<BoundPublisher>(module, "Publisher")
     .def(
       "publish", &BoundPublisher::publish, nb::arg("data"),
@@ -199,7 +222,9 @@ void bind_publisher(nb::module_ & module) {
       "publish_from", &BoundPublisher::publish_from, nb::arg("address"), nb::arg("size"),
       nb::arg("source_timestamp_ns") = nb::none())
     .def("publish_parts", &BoundPublisher::publish_parts, nb::arg("head"), nb::arg("body"))
-    .def("lend", &BoundPublisher::lend, nb::arg("head"), nb::arg("body_bytes"))
+    .def(
+      "lend", &BoundPublisher::lend, nb::arg("head"), nb::arg("body_bytes"), nb::arg("shape"),
+      nb::arg("dtype"))
     .def_prop_ro("gid", &BoundPublisher::gid)
     .def("matched", &BoundPublisher::matched)
     .def("close", &BoundPublisher::close);

@@ -29,28 +29,36 @@ class BoundLoan {
 public:
   BoundLoan(
     std::shared_ptr<SharedPublisher> source, Loan && loan, const nanobind::bytes & head,
-    size_t body_bytes);
+    size_t body_bytes, nanobind::object shape, nanobind::object dtype);
   ~BoundLoan() { end(); }
   BoundLoan(const BoundLoan &) = delete;
   BoundLoan & operator=(const BoundLoan &) = delete;
 
-  /// Returns the sequence number. BufferError while something views the room.
-  uint64_t publish();
-  void give_back();
+  /// Of the message once it is published.
+  std::optional<uint64_t> sequence() const { return sequence_; }
+  /// The array in the room. TransportError when the loan is over.
+  static nanobind::object array(nanobind::handle_t<BoundLoan> self);
+  /// The end of a `with`: publishes, or gives the room back after an error. MessageInUseError while
+  /// something views the room, which is then given back with the last view.
+  void exit(nanobind::handle error, nanobind::handle, nanobind::handle);
 
   /// Of the buffer protocol: -1 with a Python error set, or 0.
   int add_view(PyObject * self, Py_buffer * view, int flags) noexcept;
-  void remove_view() noexcept { --views_; }
+  void remove_view() noexcept;
 
 private:
-  void require_unviewed() const;
+  void publish();
   void end() noexcept;
 
   std::shared_ptr<SharedPublisher> source_;
   std::optional<Loan> loan_;
   size_t head_bytes_;
   size_t body_bytes_;
+  nanobind::object shape_;
+  nanobind::object dtype_;
+  std::optional<uint64_t> sequence_;
   size_t views_ = 0;
+  bool is_over_ = false;
 };
 
 /// A publisher as Python has it, until closed.
@@ -64,7 +72,9 @@ public:
   uint64_t publish_from(uintptr_t address, size_t size, std::optional<int64_t> source_timestamp_ns);
   uint64_t publish_parts(const nanobind::bytes & head, const nanobind::object & body);
   /// None where the topic's records lie in its ring.
-  std::unique_ptr<BoundLoan> lend(const nanobind::bytes & head, size_t body_bytes);
+  std::unique_ptr<BoundLoan> lend(
+    const nanobind::bytes & head, size_t body_bytes, nanobind::object shape,
+    nanobind::object dtype);
   nanobind::bytes gid() const;
   uint64_t matched() const { return held()->publisher->matched().current; }
   void close() { shared_.reset(); }

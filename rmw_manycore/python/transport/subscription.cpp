@@ -29,11 +29,11 @@ PyType_Slot claim_slots[] = {
 }  // namespace
 
 BoundClaim::BoundClaim(std::shared_ptr<SharedSubscription> source, Claim && claim)
-: source_(std::move(source)), claim_(std::move(claim)) {
+: source_(std::move(source)), claim_(std::move(claim)), info_(claim_->info()) {
   source_->is_claimed = true;
 }
 
-nb::bytes BoundClaim::publisher() const { return to_bytes(held().info().publisher); }
+nb::bytes BoundClaim::publisher() const { return to_bytes(info_.publisher); }
 
 nb::bytes BoundClaim::client() const { return to_bytes(held().info().correlation.client); }
 
@@ -44,11 +44,40 @@ const Claim & BoundClaim::held() const {
   return *claim_;
 }
 
-void BoundClaim::release() {
-  if (views_ != 0) {
-    throw nb::buffer_error("the record is still viewed, as by an array");
+nb::object BoundClaim::array(nb::handle_t<BoundClaim> self) {
+  const auto & claim = *nb::inst_ptr<BoundClaim>(self);
+  if (claim.is_over_ || !claim.claim_) {
+    raise_error(
+      "TransportError",
+      nb::str("the message was released: use its array inside `with`, or copy()"));
   }
-  end();
+  return claim.source_->arrays.value().array_in(self, claim.claim_->data(), claim.claim_->size());
+}
+
+void BoundClaim::release() {
+  if (!try_release()) {
+    raise_in_use("IN_USE");
+  }
+}
+
+void BoundClaim::exit(nb::handle error, nb::handle, nb::handle) {
+  if (!try_release() && error.is_none()) {
+    raise_in_use("IN_USE");
+  }
+}
+
+bool BoundClaim::try_release() noexcept {
+  const bool was_over = std::exchange(is_over_, true);
+  if (views_ == 0) {
+    end();
+  }
+  return was_over || views_ == 0;
+}
+
+void BoundClaim::remove_view() noexcept {
+  if (--views_ == 0 && is_over_) {
+    end();
+  }
 }
 
 int BoundClaim::add_view(PyObject * self, Py_buffer * view, int flags) noexcept {
@@ -82,6 +111,10 @@ void BoundClaim::end() noexcept {
 BoundSubscription::BoundSubscription(std::shared_ptr<Process> process, const EndpointSpec & spec)
 : shared_(std::make_shared<SharedSubscription>(std::move(process), spec)) {}
 
+void BoundSubscription::read_arrays(nb::object dtype, nb::object layout_of) {
+  held()->arrays.emplace(std::move(dtype), std::move(layout_of));
+}
+
 std::unique_ptr<BoundClaim> BoundSubscription::claim() {
   if (held()->is_claimed) {
     shared_->process->require_membership();
@@ -108,7 +141,9 @@ const std::shared_ptr<SharedSubscription> & BoundSubscription::held() const {
 nb::bytes BoundSubscription::gid() const { return to_bytes(subscription().gid()); }
 
 void bind_subscription(nb::module_ & module) {
-  nb::class_<BoundClaim>(module, "Claim", nb::type_slots(claim_slots))
+  nb::class_<BoundClaim>(
+    module, "Message", nb::type_slots(claim_slots), nb::is_generic(),
+    "A message in shared memory, released at the end of its `with`.")
     .def_prop_ro("address", &BoundClaim::address)
     .def_prop_ro("size", &BoundClaim::size)
     .def_prop_ro("data", &BoundClaim::data)
@@ -117,8 +152,14 @@ void bind_subscription(nb::module_ & module) {
     .def_prop_ro("number", &BoundClaim::number)
     .def_prop_ro("source_timestamp_ns", &BoundClaim::source_timestamp_ns)
     .def_prop_ro("sequence", &BoundClaim::sequence)
-    .def("release", &BoundClaim::release);
+    .def_prop_ro("array", &BoundClaim::array)
+    .def(
+      "copy", [](nb::handle_t<BoundClaim> self) { return BoundClaim::array(self).attr("copy")(); })
+    .def("release", &BoundClaim::release)
+    .def("__enter__", [](nb::handle_t<BoundClaim> self) { return self; })
+    .def("__exit__", &BoundClaim::exit, nb::arg().none(), nb::arg().none(), nb::arg().none());
   nb::class_<BoundSubscription>(module, "Subscription")
+    .def("read_arrays", &BoundSubscription::read_arrays)
     .def("claim", &BoundSubscription::claim)
     .def("note_bridged", &BoundSubscription::note_bridged)
     .def_prop_ro("gid", &BoundSubscription::gid)

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "python/transport/arrays.hpp"
 #include "transport/process.hpp"
 
 namespace manycore::python {
@@ -18,11 +19,12 @@ struct SharedSubscription {
 
   std::shared_ptr<Process> process;
   std::unique_ptr<Subscription> subscription;
-  bool is_claimed = false;  ///< guarded by the GIL
+  std::optional<ArrayReader> arrays;  ///< of messages that are arrays
+  bool is_claimed = false;            ///< guarded by the GIL
 };
 
 /// A record claimed in its topic DSM, until released. Supports the buffer protocol: memory that
-/// Python objects still view stays claimed, whatever becomes of this object.
+/// Python objects still view stays claimed, until the last of them goes.
 class BoundClaim {
 public:
   BoundClaim(std::shared_ptr<SharedSubscription> source, Claim && claim);
@@ -36,22 +38,32 @@ public:
   nanobind::bytes publisher() const;
   nanobind::bytes client() const;
   int64_t number() const { return held().info().correlation.number; }
-  int64_t source_timestamp_ns() const { return held().info().source_timestamp_ns; }
-  uint64_t sequence() const { return held().info().publication_sequence_number; }
-  /// BufferError while something views the record.
+  // Also after release():
+  int64_t source_timestamp_ns() const { return info_.source_timestamp_ns; }
+  uint64_t sequence() const { return info_.publication_sequence_number; }
+
+  /// The array that the message is, in its place. TransportError if it is none, or was released.
+  static nanobind::object array(nanobind::handle_t<BoundClaim> self);
+  /// MessageInUseError while something views the record.
   void release();
+  /// The end of a `with`: an error in it may refer to arrays.
+  void exit(nanobind::handle error, nanobind::handle, nanobind::handle);
 
   /// Of the buffer protocol: -1 with a Python error set, or 0.
   int add_view(PyObject * self, Py_buffer * view, int flags) noexcept;
-  void remove_view() noexcept { --views_; }
+  void remove_view() noexcept;
 
 private:
   const Claim & held() const;
+  /// False while something views the record: then with the last view.
+  bool try_release() noexcept;
   void end() noexcept;
 
   std::shared_ptr<SharedSubscription> source_;
   std::optional<Claim> claim_;
+  const RecordInfo info_;
   size_t views_ = 0;
+  bool is_over_ = false;
   bool is_counted_ = false;  ///< as read in place
 };
 
@@ -60,6 +72,8 @@ class BoundSubscription {
 public:
   BoundSubscription(std::shared_ptr<Process> process, const EndpointSpec & spec);
 
+  /// Its messages are arrays, see ArrayReader.
+  void read_arrays(nanobind::object dtype, nanobind::object layout_of);
   /// BufferError while the claim before is not released: it could wait for itself.
   std::unique_ptr<BoundClaim> claim();
   /// Traces that the claimed message was published outside.

@@ -12,7 +12,6 @@ import pytest
 from rmw_manycore_py.transport import TransportError
 from rmw_manycore_py.transport.multi_array import (
     TYPES,
-    Heads,
     checked_dtype,
     head_of,
     layout_of,
@@ -108,14 +107,6 @@ def test_a_type_without_a_message_is_refused(dtype: object) -> None:
 def test_a_number_is_no_array() -> None:
     with pytest.raises(TransportError, match="1 to 32 dimensions"):
         head_of((), 8)
-
-
-def test_heads_that_differ_are_read_anew() -> None:
-    heads = Heads(1)
-    for shape in [(2, 3), (3, 2), (3, 2), (6,), (2, 3)]:
-        message = memoryview(message_of(np.zeros(shape, np.uint8)))
-        assert heads.layout_of(message) == layout_of(message, len(message), 1)
-        assert heads.layout_of(message).shape == shape
 
 
 @pytest.mark.parametrize("shape", [-1, (1, -1), (), (1.5,), 1 << 40])
