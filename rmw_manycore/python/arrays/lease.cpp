@@ -73,9 +73,15 @@ void Lease::after_fork_in_parent() noexcept {
 
 void Lease::after_fork_in_child() noexcept {
   for (Lease * lease = first; lease != nullptr; lease = lease->next_) {
-    if (
-      lease->hold_ != nullptr && !manycore::make_pages_private(lease->data_, lease->size_bytes_)) {
+    if (lease->hold_ == nullptr) {
+      continue;
+    }
+    if (!manycore::make_pages_private(lease->data_, lease->size_bytes_)) {
       Py_FatalError("rmw_manycore: no memory for received messages that a child inherits");
+    }
+    if (!lease->interface_.is_kept(lease->hold_)) {
+      Py_FatalError(
+        "rmw_manycore: the parent was killed before its child had copied received messages");
     }
     lease->hold_ = nullptr;  // the parent's
   }

@@ -36,6 +36,8 @@ Access access(const RecordHold * hold) noexcept { return hold->access; }
 
 void give_back(RecordHold * hold) noexcept { delete hold; }
 
+bool is_kept(const RecordHold * hold) noexcept { return hold->hold.is_kept(); }
+
 size_t offset_of(const void * type_support, const char * path, char typecode) noexcept {
   try {
     const Cdr cdr = cdr_of(static_cast<const rosidl_message_type_support_t *>(type_support));
@@ -90,14 +92,14 @@ void lend(void * message, size_t offset, char typecode, void * data, size_t coun
   refer_of(typecode)(static_cast<uint8_t *>(message) + offset, data, count);
 }
 
-constexpr BorrowingInterface functions{adopt,  forget,    borrowed,  take_hold,
-                                       access, give_back, offset_of, lend};
+constexpr BorrowingInterface functions{adopt,     forget,  borrowed,  take_hold, access,
+                                       give_back, is_kept, offset_of, lend};
 
 }  // namespace
 }  // namespace rmw_manycore
 
 // NOLINTNEXTLINE(readability-identifier-naming): exported like the rmw interface
 extern "C" __attribute__((visibility("default"))) const rmw_manycore::BorrowingInterface *
-rmw_manycore_borrowing_3() {
+rmw_manycore_borrowing_4() {
   return &rmw_manycore::functions;
 }

@@ -42,6 +42,9 @@ struct BorrowingInterface {
   RecordHold * (*take_hold)(void * message) noexcept;
   Access (*access)(const RecordHold * hold) noexcept;
   void (*give_back)(RecordHold * hold) noexcept;
+  /// In a child of fork(), after it has read the record: false if the parent was dead by then, so
+  /// that what was read may be torn.
+  bool (*is_kept)(const RecordHold * hold) noexcept;
 
   /// Place of a sequence in messages of a type (rosidl_message_type_support_t), SIZE_MAX if it has
   /// no such sequence with elements of this type code.
@@ -51,7 +54,7 @@ struct BorrowingInterface {
   void (*lend)(void * message, size_t offset, char typecode, void * data, size_t count) noexcept;
 };
 
-constexpr char borrowing_function[] = "rmw_manycore_borrowing_3";
+constexpr char borrowing_function[] = "rmw_manycore_borrowing_4";
 using BorrowingFunction = const BorrowingInterface * (*)();
 
 }  // namespace rmw_manycore

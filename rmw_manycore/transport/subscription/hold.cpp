@@ -53,9 +53,11 @@ std::optional<Hold> Hold::take(
 Hold::Hold(
   const Holder & holder, std::atomic<uint64_t> & word, const Bytes & bytes, bool is_sole,
   std::shared_ptr<std::atomic<uint32_t>> count) noexcept
-: cluster_(holder.cluster),
+: registry_(holder.registry),
+  cluster_(holder.cluster),
   publisher_(holder.publisher),
   word_(&word),
+  own_(word.load(std::memory_order_relaxed)),
   bytes_(bytes),
   is_sole_(is_sole),
   count_(std::move(count)) {
@@ -63,13 +65,22 @@ Hold::Hold(
 }
 
 Hold::Hold(Hold && other) noexcept
-: cluster_(other.cluster_),
+: registry_(other.registry_),
+  cluster_(other.cluster_),
   publisher_(other.publisher_),
   word_(std::exchange(other.word_, nullptr)),
+  own_(other.own_),
   bytes_(other.bytes_),
   is_sole_(other.is_sole_),
   count_(std::move(other.count_)),
   side_(other.side_) {}
+
+/// The fence orders it after the reads of the bytes: memory is reused after the process's slot says
+/// that it is dead.
+bool Hold::is_kept() const noexcept {
+  std::atomic_thread_fence(std::memory_order_acquire);
+  return is_holding(registry_, own_);
+}
 
 /// Dekker with the process that frees the topic DSM of a closed publisher: it stores the row's
 /// state before it loads the word.

@@ -58,6 +58,8 @@ public:
   Hold & operator=(Hold &&) = delete;
   ~Hold();
 
+  /// In a child of fork(): false if the parent was found dead, so that the bytes may have changed.
+  bool is_kept() const noexcept;
   /// No other subscription reads the bytes, ever: their holder may write into them.
   bool is_sole() const noexcept { return is_sole_; }
   /// The CDR. What follows its encapsulation of four bytes is aligned to 64.
@@ -69,9 +71,11 @@ private:
     const Holder & holder, std::atomic<uint64_t> & word, const Bytes & bytes, bool is_sole,
     std::shared_ptr<std::atomic<uint32_t>> count) noexcept;
 
+  Registry & registry_;
   const Cluster & cluster_;
   const Slot & publisher_;
   std::atomic<uint64_t> * word_;  ///< nullptr after a move
+  uint64_t own_;                  ///< what it holds
   Bytes bytes_;
   bool is_sole_;
   std::shared_ptr<std::atomic<uint32_t>> count_;
