@@ -151,8 +151,11 @@ TEST_CASE("a chunk has room for fifteen holders; further readers copy") {
   publish(*publisher, 1, large);
   std::vector<std::unique_ptr<Hold>> kept;
   for (const auto & reader : readers) {
-    if (auto hold = hold_next(*reader)) {
+    auto claim = reader->claim();
+    if (auto hold = hold_of(*claim)) {
       kept.push_back(std::move(hold));
+    } else {
+      CHECK(claim->reached_limit().find(": 15 readers keep the same message") != std::string::npos);
     }
   }
   CHECK(kept.size() == max_holders);
@@ -242,20 +245,37 @@ TEST_CASE("where SMEM is full of untaken messages, the oldest make room") {
   CHECK(subscription->lost() == 20 - taken.size());
 }
 
-TEST_CASE("where holders have all SMEM that a topic may use, the error names them") {
+TEST_CASE("a program that keeps all messages leaves the publisher room for another one") {
   Fixture f;
   const auto publisher = f.publisher(keep_last(1));
   const auto subscription = f.subscription(keep_last(1000));
   std::vector<std::unique_ptr<Hold>> kept;
-  for (uint64_t number = 1; number <= 3; ++number) {
+  for (uint64_t number = 1; number <= 20; ++number) {
+    publish(*publisher, number, 5 * mebibyte);
+    if (auto hold = hold_next(*subscription)) {
+      kept.push_back(std::move(hold));
+    }
+  }
+  CHECK(kept.size() == 2);
+  CHECK(number_in(*kept[0]) == 1);
+  CHECK(subscription->lost() == 0);
+}
+
+TEST_CASE("where holders leave no room for a larger message, the error names them") {
+  Fixture f;
+  const auto publisher = f.publisher(keep_last(1));
+  const auto subscription = f.subscription(keep_last(1000));
+  std::vector<std::unique_ptr<Hold>> kept;
+  for (uint64_t number = 1; number <= 2; ++number) {
     publish(*publisher, number, 5 * mebibyte);
     kept.push_back(hold_next(*subscription));
+    REQUIRE(kept.back());
   }
-  const Refusal refusal = refusal_of([&] { publish(*publisher, 4, 5 * mebibyte); });
+  const Refusal refusal = refusal_of([&] { publish(*publisher, 3, 8 * mebibyte); });
   CHECK(refusal.code == ErrorCode::too_large);
-  CHECK_MESSAGE(refusal.says("subscriptions read or hold 15"), refusal.text);
+  CHECK_MESSAGE(refusal.says("subscriptions read or hold 10"), refusal.text);
   kept.pop_back();
-  CHECK_FALSE(refusal_of([&] { publish(*publisher, 5, 5 * mebibyte); }).code);
+  CHECK_FALSE(refusal_of([&] { publish(*publisher, 4, 8 * mebibyte); }).code);
   CHECK(number_in(*kept[0]) == 1);
 }
 

@@ -216,8 +216,9 @@ def test_random_holds(node):
             assert values == large(seed=old, size_bytes=len(values))
 
 
-def test_arrays_outlive_everything(start_peer):
-    peer = start_peer(publish_until_stopped)
+@pytest.mark.parametrize("is_killed", [False, True], ids=["leaves", "killed"])
+def test_arrays_outlive_everything(start_peer, peer_cluster, is_killed):
+    peer = start_peer(publish_until_stopped, cluster=peer_cluster)
     rclpy.init()
     node = rclpy.create_node("tester")
     received: list[Any] = []
@@ -225,8 +226,11 @@ def test_arrays_outlive_everything(start_peer):
     spin_until(node, lambda: len(received) >= 3)
     held = received[:3]
     node.destroy_subscription(subscription)
-    peer.say("end")
-    assert peer.wait() == 0
+    if is_killed:
+        peer.kill()
+    else:
+        peer.say("end")
+        assert peer.wait() == 0
     node.destroy_node()
     rclpy.shutdown()
     assert [one.data for one in held] == [large()] * 3

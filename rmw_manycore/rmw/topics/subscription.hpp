@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -27,6 +28,7 @@ public:
   }
 
   rmw_subscription_t handle{};
+  std::atomic<bool> has_warned_of_copies{false};
 
   const Cdr & cdr() const noexcept { return cdr_; }
   Loans & loans() noexcept { return loans_; }

@@ -13,7 +13,9 @@ namespace {
 /// `info` may be null.
 bool take(Subscription & subscription, void * ros_message, rmw_message_info_t * info) {
   const auto taken = subscription.inbox().take([&](manycore::Claim & claim) {
-    read(claim, subscription.cdr(), ros_message, subscription.process());
+    read(
+      claim, subscription.cdr(), ros_message, subscription.process(),
+      subscription.has_warned_of_copies);
   });
   if (taken && info != nullptr) {
     *info = to_rmw(*taken);

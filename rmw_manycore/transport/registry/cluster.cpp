@@ -31,11 +31,6 @@ std::string printable(std::string text) {
 constexpr const char * topic_dsm_advice =
   "lower topic_dsm_size or depth, or move nodes to another cluster";
 
-std::string fill_level(const Cluster & cluster) {
-  return std::to_string(cluster.used_bytes()) + " of its " + std::to_string(cluster.size()) +
-         " bytes of SMEM are used";
-}
-
 Error no_room(const Cluster & cluster, uint64_t length, const std::string & why_and_advice) {
   return Error(
     ErrorCode::no_space, "cluster " + std::to_string(cluster.id()) + " has no room for " +
@@ -45,7 +40,7 @@ Error no_room(const Cluster & cluster, uint64_t length, const std::string & why_
 Error no_message_room(const Cluster & cluster, uint64_t length, const std::string & advice) {
   return no_room(
     cluster, length,
-    fill_level(cluster) + ", and " + std::to_string(control_reserve_bytes(cluster.size())) +
+    cluster.fill_level() + ", and " + std::to_string(control_reserve_bytes(cluster.size())) +
       " are reserved for further nodes, publishers and subscriptions; " + advice);
 }
 
@@ -265,7 +260,7 @@ uint64_t Cluster::reserve(uint64_t length) {
   const uint64_t count = granules_of(length);
   const uint64_t first = find_run(count);
   if (first == granule_count_ || !has_room(count * granule_bytes_)) {
-    throw no_room(*this, length, fill_level(*this) + "; " + topic_dsm_advice);
+    throw no_room(*this, length, fill_level() + "; " + topic_dsm_advice);
   }
   const uint64_t offset = first * granule_bytes_;
   const uint64_t bytes = count * granule_bytes_;
@@ -327,6 +322,11 @@ void Cluster::wake_resyncing() const noexcept {
   EmcosMessage message{};
   message.kind = EmcosMessageKind::resync;
   send(message);
+}
+
+std::string Cluster::fill_level() const {
+  return std::to_string(used_bytes()) + " of its " + std::to_string(size()) +
+         " bytes of SMEM are used";
 }
 
 bool Cluster::has_room(uint64_t length) const noexcept {

@@ -124,6 +124,8 @@ public:
     return header().used_bytes.load(std::memory_order_relaxed) +
            header().charged_bytes.load(std::memory_order_relaxed);
   }
+  /// For texts: how much of the SMEM is used.
+  std::string fill_level() const;
   /// Rebuilds the map after an owner of the registry lock died: clear it, then mark all live
   /// blocks.
   void forget_allocations() noexcept;

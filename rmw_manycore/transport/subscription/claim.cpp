@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/subscription/claim.hpp"
 
+#include <string>
 #include <utility>
 
 #include "transport/registry/endpoint_blocks.hpp"
@@ -45,6 +46,27 @@ std::optional<Hold> Claim::hold() noexcept {
   return Hold::take(
     {impl.registry, source_.cluster(), source_.row(), impl.entry.process.load()}, *chunk_,
     {data_, size_}, is_for_one_reader_, impl.holds);
+}
+
+std::string Claim::reached_limit() const {
+  const Subscription::Impl & impl = *subscription_.impl_;
+  if (chunk_ == nullptr || impl.membership.is_inherited()) {
+    return "";
+  }
+  const std::string topic = std::string("messages on '") + subscription_.topic() + "' are copied: ";
+  if (!impl.holds.may_take(impl.entry.qos)) {
+    return topic + "this program keeps " + std::to_string(impl.holds.count()) +
+           " of them, the limit of its depth and " + std::to_string(HeldCount::beside_depth) +
+           "; drop them earlier, keep copies, such as message.data[:], or raise the depth";
+  }
+  if (!Hold::leaves_room(source_.cluster(), size_)) {
+    return topic + "those that are kept may fill half of cluster " +
+           std::to_string(source_.cluster().id()) + ", and " + source_.cluster().fill_level() +
+           "; drop messages that programs keep ('manycore status' shows what is held), or raise "
+           "smem_size in the mapfile";
+  }
+  return topic + std::to_string(max_holders) +
+         " readers keep the same message, which is the limit; drop messages earlier";
 }
 
 void Claim::count_in_place() noexcept {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "platform/handover_mutex.hpp"
 #include "transport/layout/endpoint.hpp"
@@ -45,6 +46,9 @@ public:
   /// Keeps the bytes in place after this claim. Nothing where the record lies in the ring, as small
   /// ones do, or where too many are held: then copy.
   std::optional<Hold> hold() noexcept;
+  /// After hold() returned nothing: a line about the limit that held memory has reached, and what
+  /// to do. Empty where the record cannot be held at all.
+  std::string reached_limit() const;
   /// Counts the record as one that its reader does not copy.
   void count_in_place() noexcept;
 

@@ -32,11 +32,16 @@ bool is_held_beside(Registry & registry, const ChunkHead & chunk, const void * o
 
 }  // namespace
 
+/// All records that are held, this one included, are in use already: a publisher, which may have
+/// half of the SMEM, can reserve another one of this size.
+bool Hold::leaves_room(const Cluster & cluster, size_t bytes) noexcept {
+  return cluster.used_bytes() + bytes <= cluster.size() / 2;
+}
+
 std::optional<Hold> Hold::take(
   const Holder & holder, ChunkHead & chunk, const Bytes & bytes, bool is_for_one_reader,
   const HeldCount & count) noexcept {
-  // The publisher needs room for what is to come: messages are copied while SMEM is scarce.
-  if (holder.cluster.used_bytes() > holder.cluster.size() / 2) {
+  if (!leaves_room(holder.cluster, bytes.size)) {
     return std::nullopt;
   }
   const Slot & process = holder.registry.processes()[holder.process].slot;

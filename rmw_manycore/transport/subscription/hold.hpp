@@ -23,9 +23,10 @@ public:
   /// Beside a history: a program that keeps its messages makes the publisher's memory grow by this.
   static constexpr uint32_t beside_depth = 4;
 
+  uint32_t count() const noexcept { return count_->load(std::memory_order_relaxed); }
   bool may_take(const Qos & qos) const noexcept {
     const uint32_t depth = qos.history == History::keep_all ? 0 : qos.depth;
-    return count_->load(std::memory_order_relaxed) < depth + beside_depth;
+    return count() < depth + beside_depth;
   }
 
 private:
@@ -50,7 +51,10 @@ public:
     uint32_t process;  ///< slot
   };
 
-  /// Called under a claim. Nothing if the chunk has no room for a further holder.
+  /// False while SMEM is too scarce for holds: the publisher needs room for what is to come.
+  static bool leaves_room(const Cluster & cluster, size_t bytes) noexcept;
+  /// Called under a claim. Nothing if a hold would not leave room, or if the chunk has no room for
+  /// a further holder.
   static std::optional<Hold> take(
     const Holder & holder, ChunkHead & chunk, const Bytes & bytes, bool is_for_one_reader,
     const HeldCount & count) noexcept;
