@@ -11,8 +11,10 @@ from rmw_manycore_py.picture.plotting import load_figure
 from soak.holdings import Holdings
 
 # Python's and glibc's heaps settle late; everything else returns to exactly its former value.
-# Topic DSMs follow their messages, whose sizes are random.
-TOLERATED = {"private_bytes": 1.1, "backed_bytes": 1.1, "smem_used_bytes": 1.1}
+# Topic DSMs follow their messages, whose sizes are random. Freed blocks below `min_hole_bytes` keep
+# their pages until a larger block over them is freed: how many they are differs from rest to rest,
+# below the address up to which the SMEM was ever in use.
+TOLERATED = {"private_bytes": 1.1, "backed_bytes": 1.3, "smem_used_bytes": 1.1}
 # Threads and descriptors fluctuate with a receive thread that has just been replaced.
 SETTLING = 2
 
