@@ -32,6 +32,7 @@ TRUE = pose(40, 0.5, 1.8, 0.01, -0.02, 0.3)
 GUESS = pose(40.4, 0.2, 1.9, 0, 0, 0.34)
 FAR = TRUE @ pose(6, 3, 0, 0, 0, 0.3)  # is looked at again
 SCAN = scan_at(WORLD, TRUE)
+DENSE = np.concatenate([SCAN, SCAN])  # so large that few of its points approach the pose
 OPTIONS = MatcherOptions()
 MAP = VoxelMap.from_points(WORLD, OPTIONS)
 CPUS = sorted(os.sched_getaffinity(0))
@@ -76,7 +77,8 @@ def cpu_ns(pid: int) -> int:
 def test_any_number_of_workers_finds_the_same_pose_bit_for_bit(count: int) -> None:
     with workers(count) as matcher:
         for guess in (GUESS, TRUE, pose(40.9, 0, 1.8, 0, 0, 0.25), FAR):
-            assert numbers(matcher.align(SCAN, guess)) == numbers(alone().align(SCAN, guess))
+            for scan in (SCAN, DENSE):
+                assert numbers(matcher.align(scan, guess)) == numbers(alone().align(scan, guess))
         assert matcher.score(SCAN, GUESS) == alone().score(SCAN, GUESS)
 
 

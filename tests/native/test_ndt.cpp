@@ -87,6 +87,40 @@ TEST_CASE("all instruction sets compute the same sums, whatever the size of the 
   }
 }
 
+TEST_CASE("a thinned scan has the sums of every n-th group of points") {
+  const std::vector<double> points = ground();
+  const VoxelMap map =
+    build_voxel_map(points.data(), points.size() / 3, map_options(Search::radius));
+  for (const size_t count : {0, 16, 1999, 4000, 4001, 23457}) {
+    const std::vector<float> scan = scan_of(count);
+    AlignedFloats floats;
+    const ScanView whole =
+      lay_out_scan(scan.data(), count, floats.with_room_for(scan_floats(count)));
+    const ScanView few = thinned(whole, 2000);
+    CHECK(few.step == std::max<size_t>(1, count / 2000));
+    std::vector<float> kept;
+    for (size_t i = 0; i < whole.points; ++i) {
+      if (i / group_points % few.step == 0) {
+        kept.insert(kept.end(), {whole.x_m[i], whole.y_m[i], whole.z_m[i]});
+      }
+    }
+    CHECK(few.points == kept.size() / 3);
+    AlignedFloats others;
+    const ScanView alone =
+      lay_out_scan(kept.data(), few.points, others.with_room_for(scan_floats(few.points)));
+    for (const Simd simd : kinds()) {
+      const Kernel kernel = kernel_of(simd);
+      const Problem problem{map.view(), few, match_options, {}};
+      const Derivatives found = evaluate_alone(problem, kernel, pose);
+      const Derivatives expected =
+        evaluate_alone({map.view(), alone, match_options, {}}, kernel, pose);
+      CHECK(found.points == expected.points);
+      CHECK(found.scan_points == few.points);
+      CHECK(found.score == doctest::Approx(expected.score).epsilon(1e-5));
+    }
+  }
+}
+
 TEST_CASE("separate search and derivatives equal the combined pass") {
   const std::vector<double> points = ground();
   const VoxelMap map =

@@ -86,4 +86,13 @@ ScanView view_scan(const float * floats, size_t points) {
   return {floats, floats + stride, floats + 2 * stride, points, groups};
 }
 
+ScanView thinned(const ScanView & scan, size_t points) {
+  ScanView out = scan;
+  out.step = std::max<size_t>(1, scan.points / points);
+  const size_t used = (scan.groups + out.step - 1) / out.step;
+  const bool has_last = used > 0 && (used - 1) * out.step == scan.groups - 1;
+  out.points = used * group_points - (has_last ? scan.groups * group_points - scan.points : 0);
+  return out;
+}
+
 }  // namespace manycore::ndt

@@ -22,8 +22,9 @@ struct ScanView {
   const float * x_m;
   const float * y_m;
   const float * z_m;
-  size_t points;  ///< without padding
+  size_t points;  ///< without padding and what `step` leaves out
   size_t groups;
+  size_t step = 1;  ///< of the groups every `step`-th is used
 };
 
 /// Number of floats for a scan of this many points.
@@ -37,5 +38,8 @@ ScanView lay_out_scan(const float * xyz_m, size_t count, float * floats);
 
 /// View of the scan that lay_out_scan() left in `floats`, for example from another process.
 ScanView view_scan(const float * floats, size_t points);
+
+/// View of every n-th group of a whole scan, so that about `points` remain, or a few more.
+ScanView thinned(const ScanView & scan, size_t points);
 
 }  // namespace manycore::ndt

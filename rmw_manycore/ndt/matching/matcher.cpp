@@ -13,6 +13,13 @@ namespace {
 /// Convergence threshold of coarse levels, as a fraction of the voxel size: the next finer level
 /// converges from anywhere within a voxel.
 constexpr double coarse_epsilon_voxels = 0.025;
+/// Points that approach a maximum; a scan of twice as many is thinned for that. Where vehicles hide
+/// 40 % of the scan, 2,048 found the right place in fewer scans than all points, 4,096 in as many.
+constexpr size_t approach_points = 4096;
+/// Longest step (m, rad) to the maximum of all points that is taken without looking again.
+constexpr double last_step_limit = 0.05;
+/// Steps of all points where that is farther; more are taken at wrong places only.
+constexpr uint32_t max_last_steps = 3;
 /// A polished pose is at most this many of its level's voxels away from the scored level's.
 constexpr double polish_voxels = 0.3;
 /// Minimum share of the scored level's points that a polishing level sees: where the map is sparse,
@@ -41,6 +48,11 @@ double apart_m(const Pose6 & a, const Pose6 & b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
+/// Share of a scan's points that see a level.
+double share_of(const Derivatives & at) {
+  return at.scan_points > 0 ? at.points / static_cast<double>(at.scan_points) : 0;
+}
+
 /// Whether a finer level's result is a better place of the same maximum: near, seen by most of the
 /// points that the scored level sees, and no worse there.
 bool refines(
@@ -48,50 +60,141 @@ bool refines(
   const Derivatives & at) {
   return fine.outcome == Outcome::converged &&
          apart_m(fine.pose, scored.pose) <= polish_voxels * map.header->voxel_size_m &&
-         fine.at.points >= polish_points_share * scored.at.points &&
+         share_of(fine.at) >= polish_points_share * share_of(scored.at) &&
          at.score >= polish_score_share * scored.at.score;
 }
+
+bool is_concave(const Matrix6 & hessian) {
+  const auto values = symmetric_eigen(hessian).values;
+  return std::all_of(values.begin(), values.end(), [](double value) { return value < 0; });
+}
+
+/// An alignment from level to level. Few points approach the maximum of the scored level; all of
+/// them only refine the pose.
+class Steps {
+public:
+  Steps(const Descent & levels, Problem & problem, const EvaluateProblem & evaluate)
+  : levels_(levels), problem_(problem), evaluate_(evaluate), whole_(problem.scan) {
+    const bool is_thinned = scored_ > 0 && levels.polishing > 0;
+    few_ = is_thinned ? thinned(whole_, approach_points) : whole_;
+  }
+
+  NewtonResult from(const Pose6 & guess) {
+    path_.add(guess);
+    NewtonResult result;
+    result.pose = guess;
+    for (size_t level = 0; level <= scored_; ++level) {
+      result = align(level, few_, result.pose);
+    }
+    const Derivatives first = result.first;
+    finish(result);
+    result.first = first;
+    result.iterations = iterations_;
+    result.path = path_;
+    return result;
+  }
+
+private:
+  /// Aligns to a level, and adds its steps to those of all.
+  NewtonResult align(size_t level, const ScanView & scan, const Pose6 & guess) {
+    const NewtonResult found = tried(level, scan, guess);
+    add_steps(found, path_);
+    return found;
+  }
+
+  NewtonResult tried(
+    size_t level, const ScanView & scan, const Pose6 & guess,
+    uint32_t max_iterations = UINT32_MAX) {
+    problem_.map = levels_.maps[level];
+    problem_.scan = scan;
+    MatchOptions options = options_of(problem_.options, problem_.map, level >= scored_);
+    options.max_iterations = std::min(options.max_iterations, max_iterations);
+    const NewtonResult found =
+      maximise(guess, options, [&](const Pose6 & pose) { return evaluate_(problem_, pose); });
+    iterations_ += found.iterations;
+    return found;
+  }
+
+  Derivatives score(const ScanView & scan, const Pose6 & pose) {
+    problem_.map = levels_.scored();
+    problem_.scan = scan;
+    return evaluate_(problem_, pose);
+  }
+
+  /// Refines the scored level's result: on the finer levels, else with all points on this one.
+  void finish(NewtonResult & result) {
+    const bool is_thinned = few_.step > 1;
+    bool is_polished = false;
+    for (size_t i = scored_ + 1; i < levels_.maps.size() && polish(i, result); ++i) {
+      is_polished = true;
+    }
+    if (is_thinned) {
+      if (!is_polished) {
+        result = with_all(scored_, result);
+        path_.add(result.pose);
+      }
+      result.at = score(whole_, result.pose);
+    }
+  }
+
+  /// Moves a result to a finer level's; false if that does not refine it.
+  bool polish(size_t level, NewtonResult & result) {
+    if (result.outcome != Outcome::converged) {
+      return false;
+    }
+    NewtonResult fine = tried(level, few_, result.pose);
+    Derivatives there = score(few_, fine.pose);
+    if (few_.step > 1 && refines(fine, levels_.maps[level], result, there)) {
+      fine = with_all(level, fine);
+      there = score(few_, fine.pose);
+    }
+    if (!refines(fine, levels_.maps[level], result, there)) {
+      return false;
+    }
+    add_steps(fine, path_);
+    result.pose = fine.pose;
+    result.at = there;
+    return true;
+  }
+
+  /// Moves what few points found to the maximum of all. If that is near, one step of Newton's is
+  /// enough: its error is quadratic.
+  NewtonResult with_all(size_t level, const NewtonResult & found) {
+    if (few_.step == 1 || found.outcome != Outcome::converged) {
+      return found;
+    }
+    problem_.map = levels_.maps[level];
+    problem_.scan = whole_;
+    const Derivatives at = evaluate_(problem_, found.pose);
+    const Vector6 step = newton_step(at.hessian, at.gradient);
+    if (!is_concave(at.hessian) || !(norm(step) <= last_step_limit)) {
+      return tried(level, whole_, found.pose, max_last_steps);
+    }
+    ++iterations_;
+    NewtonResult out = found;
+    for (size_t i = 0; i < step.size(); ++i) {
+      out.pose[i] += step[i];
+    }
+    out.path.add(out.pose);
+    return out;
+  }
+
+  const Descent & levels_;
+  Problem & problem_;
+  const EvaluateProblem & evaluate_;
+  ScanView whole_;
+  ScanView few_;
+  size_t scored_ = levels_.maps.size() - levels_.polishing - 1;
+  uint32_t iterations_ = 0;
+  Path path_;
+};
 
 }  // namespace
 
 NewtonResult descend(
   const Descent & levels, Problem & problem, const Pose6 & guess,
   const EvaluateProblem & evaluate) {
-  const auto at = [&](const Pose6 & pose) { return evaluate(problem, pose); };
-  const size_t scored = levels.maps.size() - levels.polishing - 1;
-  NewtonResult result;
-  result.pose = guess;
-  uint32_t iterations = 0;
-  Path path;
-  path.add(guess);
-  const auto align_to = [&](size_t level) {
-    problem.map = levels.maps[level];
-    const bool is_last = level == scored || level + 1 == levels.maps.size();
-    const MatchOptions options = options_of(problem.options, problem.map, is_last);
-    const NewtonResult found = maximise(result.pose, options, at);
-    iterations += found.iterations;
-    return found;
-  };
-  for (size_t i = 0; i <= scored; ++i) {
-    result = align_to(i);
-    add_steps(result, path);
-  }
-  const Derivatives first = result.first;
-  for (size_t i = scored + 1; i < levels.maps.size() && result.outcome == Outcome::converged; ++i) {
-    const NewtonResult fine = align_to(i);
-    problem.map = levels.scored();
-    const Derivatives there = at(fine.pose);
-    if (!refines(fine, levels.maps[i], result, there)) {
-      break;
-    }
-    add_steps(fine, path);
-    result.pose = fine.pose;
-    result.at = there;
-  }
-  result.first = first;
-  result.iterations = iterations;
-  result.path = path;
-  return result;
+  return Steps(levels, problem, evaluate).from(guess);
 }
 
 void check_levels(const Levels & levels) {

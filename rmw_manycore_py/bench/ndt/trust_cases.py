@@ -173,7 +173,7 @@ def looked_again(case: Case, shares: Shares) -> Case:
     def explained(found: Alignment) -> Case:
         return replace(case, alignment=world.matcher.explained(found, scan))
 
-    if case.judged(shares).is_score_low:
+    if case.judged(shares).is_score_low or case.alignment.is_degenerate:
         closer = world.matcher.align_once(scan, case.guess, only_pose=True, is_close=True)
         if explained(closer).judged(shares).is_believed:
             return explained(closer)

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -155,24 +156,20 @@ class Matcher:
     ) -> Alignment:
         """Find the pose near the guess (4, 4) at which points (N, 3) [m, sensor frame] fit best.
 
-        If the result does not fit well enough, aligns to the finest level alone, and takes a second
-        look (second_look.py), and searches around the guess.
+        If it does not fit, looks again (second_look.py), aligns closer, searches around the guess.
 
         :param T_map_guess: (4, 4) initial guess of T_map_sensor.
         :param T_map_regularization: (4, 4) pose that attracts the result along the vehicle's axis.
         :param only_pose: skip alignments and scores that only serve the covariance.
-        :raises ManycoreError: see the class; bad input is reported in the result instead.
         """
         asked = self._asked(points, T_map_guess, T_map_regularization)
         if isinstance(asked, Alignment):
             return asked
         found = self._aligned(asked)
-        if not found.is_refused and not self._convinces(found):
-            found = self._looked_closer(found, asked)
-            if self.options.second_look_levels and not self._convinces(found):
-                found = self._looked_again(found, asked, self._convinces)
-                if not self._convinces(found):
-                    found = self._looked_around(found, asked)
+        for look in self._further_looks():
+            if found.is_refused or self._convinces(found):
+                break
+            found = look(found, asked)
         return found if only_pose else self._with_covariance(found, asked)
 
     def align_once(
@@ -188,8 +185,7 @@ class Matcher:
         """Return the result of :meth:`align` without a second look.
 
         :param is_wide: align to the levels of a second look first.
-        :param is_close: align to the finest level alone. Where vehicles hide much, coarser levels
-            drag their roofs to the ground.
+        :param is_close: align to the finest level alone: coarser ones drag vehicles' roofs down.
         """
         asked = self._asked(points, T_map_guess, T_map_regularization)
         if isinstance(asked, Alignment):
@@ -243,11 +239,18 @@ class Matcher:
             fits or alignment.explained_score > EXPLAINED_SHARE * own
         )
 
+    def _further_looks(self) -> Iterator[Callable[[Alignment, Question], Alignment]]:
+        """Yield what is tried in turn until a result convinces, the cheapest first."""
+        yield lambda found, asked: self.explained(found, asked.scan)
+        if self.options.second_look_levels:
+            yield partial(self._looked_again, convinces=self._convinces)
+        yield self._looked_closer
+        if self.options.second_look_levels:
+            yield self._looked_around
+
     def _looked_closer(self, first: Alignment, asked: Question) -> Alignment:
         """Return what fits better: `first`, or the alignment to the finest level alone."""
         first = self.explained(first, asked.scan)
-        if self._convinces(first):
-            return first
         closer = self.explained(self._aligned(asked, is_close=True), asked.scan)
         return max((first, closer), key=lambda one: max(one.fit, one.explained_score))
 
@@ -258,7 +261,7 @@ class Matcher:
         return best_of_second_look(first, asked.guess, aligned_widely, convinces)
 
     def _looked_around(self, first: Alignment, asked: Question) -> Alignment:
-        """Return the best of `first` and of places that a search finds around the guess."""
+        """Return the best of `first` and places around the guess."""
         search_map = self._require_map().search_map
         if search_map is None:
             return first
@@ -373,9 +376,8 @@ class Matcher:
     def point_scores(self, points: ArrayLike, T_map_sensor: ArrayLike) -> NDArray[np.float32]:
         """Return for each of points (N, 3) at a pose (4, 4) the score of its best voxel (N,).
 
-        NaN for points without voxels in their neighbourhood; the mean of the others is the
-        nearest-voxel likelihood. Runs on the calling thread, point by point; meant for
-        visualization.
+        NaN for points without voxels around; the mean of the others is the nearest-voxel
+        likelihood.
         """
         voxel_map = self._require_map()
         scan = scan_points(points)

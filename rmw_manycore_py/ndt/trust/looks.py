@@ -68,7 +68,7 @@ class Looks:
             return first
         again = self._from_expectation(scan, first[1])
         if again is None and not is_searching and self._vain < VAIN_SCANS:
-            again = self._closer(scan, first[1]) or self._second_look(scan, first)
+            again = self._closer(scan, first) or self._second_look(scan, first)
             self._vain += again is None
         return again or first
 
@@ -79,11 +79,12 @@ class Looks:
                 return found
         return None
 
-    def _closer(self, scan: ScanAt, before: Verdict) -> Looked | None:
-        """Align to the finest level alone, if it is the score that refuses the pose."""
-        if not before.is_score_low:
+    def _closer(self, scan: ScanAt, first: Looked) -> Looked | None:
+        """Align to the finest level alone, if the score refuses the pose or has no maximum."""
+        before, verdict = first
+        if not (verdict.is_score_low or before.is_degenerate):
             return None
-        expected = before.expected
+        expected = verdict.expected
         found = self._from(scan, scan.guess if expected is None else expected.poses[0], closer=True)
         return found if found[1].is_believed else None
 

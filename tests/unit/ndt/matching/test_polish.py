@@ -47,6 +47,20 @@ def test_poses_are_better_and_scores_those_of_the_voxel_size():
     assert np.median(after_m) < 0.7 * np.median(before_m)
 
 
+def test_few_points_approach_the_maximum_and_all_refine_it():
+    true = pose(40, 0.5, 1.8, 0.01, -0.02, 0.3)
+    scan = np.concatenate([scan_at(WORLD, true)] * 2)
+    guess = true @ pose(1, 0.5, 0, 0, 0, 0.1)
+    polishing = matcher(POLISHING)
+    found = polishing.align_once(scan, guess)
+    assert found.first.points_in_map < 0.5 * len(scan)
+    assert found.score == polishing.score(scan, found.T_map_sensor).score
+    np.testing.assert_array_equal(found.path[-1], found.T_map_sensor)
+    with_all = polishing.align_once(scan, true, is_close=True)  # not thinned
+    assert with_all.first.points_in_map > 0.9 * len(scan)
+    assert errors(found.T_map_sensor, with_all.T_map_sensor)[0] < 0.002
+
+
 def test_where_the_map_is_too_sparse_for_finer_voxels_nothing_changes():
     sparse = WORLD[::6]
     true = pose(40, 0.5, 1.8, 0.01, -0.02, 0.3)
@@ -57,7 +71,7 @@ def test_where_the_map_is_too_sparse_for_finer_voxels_nothing_changes():
 
 def test_wrong_places_are_not_moved_to_better_ones():
     """They score as with ordinary voxels alone, and so are judged alike."""
-    world, scan = street_map(), street_scan()
+    world, scan = street_map(), street_scan()[::2]  # so few that all points approach
     plain, polishing = (matcher(replace(one, search="radius"), world) for one in (PLAIN, POLISHING))
     generator = np.random.default_rng(4)
     wrong = 0
