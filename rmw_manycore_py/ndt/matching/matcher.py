@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +27,7 @@ from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
 from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE, SAMPLE, explained_score
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.level import levelled
+from rmw_manycore_py.ndt.matching.native_matcher import NativeMatcher, Position
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.places import places_around
 from rmw_manycore_py.ndt.matching.second_look import (
@@ -36,9 +36,8 @@ from rmw_manycore_py.ndt.matching.second_look import (
     best_of,
     best_of_second_look,
 )
+from rmw_manycore_py.ndt.matching.vehicles import beyond_vehicles
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
-
-Position = tuple[float, float]
 
 CANNOT_WORK = "the matcher cannot work"  # out of memory, or workers keep dying
 BUILT_FOR = (  # options that matcher and map must agree on
@@ -55,36 +54,6 @@ class Question:
     scan: ScanPoints
     guess: Pose
     position: Position | None
-
-
-class NativeMatcher(Protocol):
-    """Interface of the kernel, with or without workers."""
-
-    def align(
-        self,
-        maps: list[_ndt.VoxelMap],
-        points: ScanPoints,
-        guess: Pose,
-        regularization_position_m: Position | None = None,
-        first: int = 0,
-        polishing: int = 0,
-    ) -> _ndt.NewtonResult:
-        """Align from a guess to one map after the other; the last `polishing` refine the pose."""
-        ...
-
-    def evaluate(
-        self,
-        maps: list[_ndt.VoxelMap],
-        points: ScanPoints,
-        pose: Pose,
-        polishing: int = 0,
-    ) -> _ndt.Derivatives:
-        """Return score and derivatives at a pose on the last map but `polishing`."""
-        ...
-
-    def search(self, search: _ndt.PlaceSearch, descends: bool, for_s: float) -> bool:
-        """Work on a phase of a search; return whether all of it is done."""
-        ...
 
 
 class Matcher:
@@ -185,12 +154,12 @@ class Matcher:
         """Return the result of :meth:`align` without a second look.
 
         :param is_wide: align to the levels of a second look first.
-        :param is_close: align to the finest level alone: coarser ones drag vehicles' roofs down.
+        :param is_close: align to the finest level alone, at first without what may be vehicles.
         """
         asked = self._asked(points, T_map_guess, T_map_regularization)
         if isinstance(asked, Alignment):
             return asked
-        found = self._aligned(asked, is_wide=is_wide, is_close=is_close)
+        found = self._closely(asked) if is_close else self._aligned(asked, is_wide=is_wide)
         return found if only_pose else self._with_covariance(found, asked)
 
     def second_look(
@@ -251,8 +220,16 @@ class Matcher:
     def _looked_closer(self, first: Alignment, asked: Question) -> Alignment:
         """Return what fits better: `first`, or the alignment to the finest level alone."""
         first = self.explained(first, asked.scan)
-        closer = self.explained(self._aligned(asked, is_close=True), asked.scan)
+        closer = self.explained(self._closely(asked), asked.scan)
         return max((first, closer), key=lambda one: max(one.fit, one.explained_score))
+
+    def _closely(self, asked: Question) -> Alignment:
+        """Align to the finest level from where what cannot be a vehicle leads (vehicles.py)."""
+        seen = beyond_vehicles(asked.scan, asked.guess)
+        start = self._aligned(replace(asked, scan=seen), is_close=True, polish=False)
+        if not start.is_degenerate:
+            asked = replace(asked, guess=start.T_map_sensor)
+        return self._aligned(asked, is_close=True)
 
     def _looked_again(self, first: Alignment, asked: Question, convinces: Convinces) -> Alignment:
         def aligned_widely(start: Pose) -> Alignment:

@@ -140,7 +140,7 @@ class PoseJudge:
         """
         expected = self.motion.at(stamp_s, guess)
         along = self._uncertain(expected, stood_out)
-        unusable = _why_unusable(alignment)
+        unusable = why_unusable(alignment)
         low = "" if unusable else self._why_low(alignment, is_first=expected is None)
         implausible = "" if unusable else _why_implausible(alignment, expected, along)
         why = unusable or low or implausible
@@ -231,7 +231,8 @@ class PoseJudge:
         return ""
 
 
-def _why_unusable(alignment: Alignment) -> str:
+def why_unusable(alignment: Alignment) -> str:
+    """Return why a pose is refused whatever its score; "" if it is not."""
     if alignment.is_degenerate:
         return f"no convergence: {alignment.why}"
     if alignment.share_in_map < MIN_SHARE_IN_MAP:

@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Aligns a scan, and again where the result is refused: at most ten times.
+"""Aligns a scan, and again where the result is refused: at most eleven times.
 
 ```
  from the guess ── refused ─► from where the motion leads ── refused ─► finest level alone
-   1                            up to 3                         if the score refuses: 1
+   1                            up to 3                         if the score refuses: 2
                                                             ── refused ─► second look
                                                                            up to 5
 ```
@@ -80,7 +80,7 @@ class Looks:
         return None
 
     def _closer(self, scan: ScanAt, first: Looked) -> Looked | None:
-        """Align to the finest level alone, if the score refuses the pose or has no maximum."""
+        """Align to the finest level alone if the score refuses the pose or has no maximum."""
         before, verdict = first
         if not (verdict.is_score_low or before.is_degenerate):
             return None
