@@ -21,6 +21,7 @@ from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE
+from rmw_manycore_py.ndt.trust.judge import why_unusable
 from rmw_manycore_py.ndt.trust.score_level import FIRST_SHARE, ScoreLevel
 from rmw_manycore_py.ndt.trust.search import Found, Region
 
@@ -186,7 +187,11 @@ def chosen(cases: Sequence[Case]) -> Shares:
         for case in right
         if case.before
     ]
-    wrong = [case for case in cases if case.is_wrong and not case.repeats]
+    wrong = [
+        case
+        for case in cases
+        if case.is_wrong and not case.repeats and not why_unusable(case.alignment)
+    ]
     fits = [case.alignment.fit / case.own_score for case in wrong]
     explained = [case.alignment.explained_score / case.own_score for case in wrong]
     return Shares(
