@@ -18,8 +18,8 @@ LIGHT = 0.60  # load per CPU up to which a mapping counts for the goals
 class MappingError:
     """Errors of a mapping: relative ones of its chains, in points of its loads.
 
-    :ivar repeated: errors of p50 of each run, taken from the median of the other runs: no
-        prediction of one run can be better.
+    :ivar repeated_p50: errors of each run's p50 if it is predicted by the median of the others:
+        no prediction of one run can be better. `repeated_p99` likewise.
     :ivar others: share of the CPUs that other processes took, at most.
     """
 
@@ -27,7 +27,8 @@ class MappingError:
     load: float
     p50: tuple[float, ...]
     p99: tuple[float, ...]
-    repeated: tuple[float, ...]
+    repeated_p50: tuple[float, ...]
+    repeated_p99: tuple[float, ...]
     load_points: float
     others: float
 
@@ -48,6 +49,7 @@ def error_of(one: Compared) -> MappingError:
         tuple(predicted.p50_us / found.p50_us - 1 for predicted, found in pairs),
         tuple(predicted.p99_us / found.p99_us - 1 for predicted, found in pairs),
         tuple(error for name in _common(one) for error in _repeated(_p50s(one.runs, name))),
+        tuple(error for name in _common(one) for error in _repeated(_p99s(one.runs, name))),
         100 * max(points, default=0.0),
         measured.others,
     )
@@ -63,10 +65,14 @@ def _p50s(runs: Sequence[Figures], name: str) -> list[float]:
     return [run.chains[name].p50_us for run in runs]
 
 
-def _repeated(p50s_us: Sequence[float]) -> Iterator[float]:
-    for index, p50_us in enumerate(p50s_us):
-        if others := [*p50s_us[:index], *p50s_us[index + 1 :]]:
-            yield median(others) / p50_us - 1
+def _p99s(runs: Sequence[Figures], name: str) -> list[float]:
+    return [run.chains[name].p99_us for run in runs]
+
+
+def _repeated(of_runs_us: Sequence[float]) -> Iterator[float]:
+    for index, of_run_us in enumerate(of_runs_us):
+        if others := [*of_runs_us[:index], *of_runs_us[index + 1 :]]:
+            yield median(others) / of_run_us - 1
 
 
 @dataclass(frozen=True)
