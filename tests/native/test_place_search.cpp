@@ -241,8 +241,8 @@ TEST_CASE("roots with high bounds come first, and of equal ones those with low n
   search.work(SearchPhase::bound, [] { return false; });
   search.order_roots();
   const SearchHead & h = search.head();
-  const auto * const bounds = &search.memory().at<const uint16_t>(h.bounds_offset);
-  const auto * const order = &search.memory().at<const uint32_t>(h.order_offset);
+  const auto * const bounds = &search.memory().at<const uint16_t>(h.at.bounds);
+  const auto * const order = &search.memory().at<const uint32_t>(h.at.order);
   std::vector<uint32_t> expected(search.roots());
   std::iota(expected.begin(), expected.end(), 0U);
   std::stable_sort(expected.begin(), expected.end(), [bounds](uint32_t a, uint32_t b) {
@@ -261,7 +261,7 @@ TEST_CASE("the memory of a search is known before it is laid out") {
   const std::vector<float> scan = seen_from(9, 20, 30, 1.5);
   const size_t points = scan.size() / 3;
   const PlaceSearch search(map, scan.data(), points, everywhere);
-  CHECK(search_bytes(map, points, everywhere) == search.head().size_bytes);
+  CHECK(search_bytes(map, points, everywhere) == search.head().at.size_bytes);
 }
 
 }  // namespace manycore::ndt

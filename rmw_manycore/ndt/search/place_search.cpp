@@ -82,26 +82,17 @@ uint64_t tile_count(const SearchMap & map) {
          (static_cast<uint64_t>(h.cells[1]) >> tile_level) * sectors;
 }
 
-/// Where the parts of a search's memory are.
-struct Layout {
-  std::vector<Square> squares;
-  uint64_t points_offset;
-  uint64_t squares_offset;
-  uint64_t bounds_offset;
-  uint64_t order_offset;
-  uint64_t tiles_offset;
-  uint64_t size_bytes;
-};
-
-Layout layout_of(const SearchMap & map, size_t count, const SearchOptions & options) {
-  Layout l{squares_of(map, options), align_up(sizeof(SearchHead)), 0, 0, 0, 0, 0};
-  const uint64_t roots = l.squares.size() * options.searched_yaws;
-  l.squares_offset = align_up(l.points_offset + 3 * count * sizeof(float));
-  l.bounds_offset = align_up(l.squares_offset + l.squares.size() * sizeof(Square));
-  l.order_offset = align_up(l.bounds_offset + roots * sizeof(uint16_t));
-  l.tiles_offset = align_up(l.order_offset + roots * sizeof(uint32_t));
-  l.size_bytes = l.tiles_offset + tile_count(map) * sizeof(uint64_t);
-  return l;
+SearchParts parts_of(
+  const SearchMap & map, size_t count, size_t squares, const SearchOptions & options) {
+  const uint64_t roots = squares * options.searched_yaws;
+  SearchParts at{};
+  at.points = align_up(sizeof(SearchHead));
+  at.squares = align_up(at.points + 3 * count * sizeof(float));
+  at.bounds = align_up(at.squares + squares * sizeof(Square));
+  at.order = align_up(at.bounds + roots * sizeof(uint16_t));
+  at.tiles = align_up(at.order + roots * sizeof(uint32_t));
+  at.size_bytes = at.tiles + tile_count(map) * sizeof(uint64_t);
+  return at;
 }
 
 SharedMemory laid_out(
@@ -110,29 +101,25 @@ SharedMemory laid_out(
   if (count > max_sketch_points || !is_turn || options.kept_permille == 0) {
     throw Error(ErrorCode::invalid_argument, "search: too many points, or no direction");
   }
-  const Layout l = layout_of(map, count, options);
-  SharedMemory memory = SharedMemory::anonymous("manycore-ndt-search", l.size_bytes);
+  const std::vector<Square> squares = squares_of(map, options);
+  const SearchParts at = parts_of(map, count, squares.size(), options);
+  SharedMemory memory = SharedMemory::anonymous("manycore-ndt-search", at.size_bytes);
   auto & h = memory.at<SearchHead>(0);
   static std::atomic<uint64_t> searches{0};
   h.id = ++searches;
   h.points = static_cast<uint32_t>(count);
   h.options = options;
-  h.squares = static_cast<uint32_t>(l.squares.size());
-  h.points_offset = l.points_offset;
-  h.squares_offset = l.squares_offset;
-  h.bounds_offset = l.bounds_offset;
-  h.order_offset = l.order_offset;
-  h.tiles_offset = l.tiles_offset;
-  h.size_bytes = l.size_bytes;
-  std::copy_n(xyz_m, 3 * count, &memory.at<float>(l.points_offset));
-  std::copy(l.squares.begin(), l.squares.end(), &memory.at<Square>(l.squares_offset));
+  h.squares = static_cast<uint32_t>(squares.size());
+  h.at = at;
+  std::copy_n(xyz_m, 3 * count, &memory.at<float>(at.points));
+  std::copy(squares.begin(), squares.end(), &memory.at<Square>(at.squares));
   return memory;
 }
 
 }  // namespace
 
 uint64_t search_bytes(const SearchMap & map, size_t count, const SearchOptions & options) {
-  return layout_of(map, count, options).size_bytes;
+  return parts_of(map, count, squares_of(map, options).size(), options).size_bytes;
 }
 
 PlaceSearch::PlaceSearch(
@@ -143,13 +130,13 @@ PlaceSearch::PlaceSearch(const SearchMap & map, SharedMemory memory)
 : map_(map),
   memory_(std::move(memory)),
   sketch_(
-    &memory_.at<float>(head().points_offset), head().points, head().options.yaws,
+    &memory_.at<float>(head().at.points), head().points, head().options.yaws,
     map.header().cells[0]) {}
 
 void PlaceSearch::work(SearchPhase phase, const std::function<bool()> & is_due) {
   SearchHead & h = head();
-  auto * const bounds = &memory_.at<uint16_t>(h.bounds_offset);
-  const auto * const order = &memory_.at<const uint32_t>(h.order_offset);
+  auto * const bounds = &memory_.at<uint16_t>(h.at.bounds);
+  const auto * const order = &memory_.at<const uint32_t>(h.at.order);
   while (!is_due()) {
     const uint32_t begin = h.next.fetch_add(roots_at_once, std::memory_order_relaxed);
     if (begin >= roots()) {
@@ -173,8 +160,8 @@ bool PlaceSearch::is_done() const noexcept {
 
 void PlaceSearch::order_roots() {
   SearchHead & h = head();
-  const auto * const bounds = &memory_.at<const uint16_t>(h.bounds_offset);
-  auto * const order = &memory_.at<uint32_t>(h.order_offset);
+  const auto * const bounds = &memory_.at<const uint16_t>(h.at.bounds);
+  auto * const order = &memory_.at<uint32_t>(h.at.order);
   std::vector<uint32_t> begin(h.points + 2);  // of the roots of each number of missed points
   for (uint32_t i = 0; i < roots(); ++i) {
     ++begin[h.points - bounds[i] + 1];
@@ -189,7 +176,7 @@ void PlaceSearch::order_roots() {
 Node PlaceSearch::root(uint32_t index) const noexcept {
   const SearchHead & h = head();
   const SearchOptions & o = h.options;
-  const Square square = (&memory_.at<const Square>(h.squares_offset))[index / o.searched_yaws];
+  const Square square = (&memory_.at<const Square>(h.at.squares))[index / o.searched_yaws];
   const uint32_t yaw = (o.first_yaw + index % o.searched_yaws) % o.yaws;
   return {root_level, square.x * root_cells, square.y * root_cells, yaw};
 }
@@ -253,12 +240,12 @@ std::atomic<uint64_t> & PlaceSearch::tile(const Node & node) const noexcept {
   const uint64_t wide = static_cast<uint64_t>(map_.header().cells[0]) >> tile_level;
   const uint64_t index = (node.y >> tile_level) * wide + (node.x >> tile_level);
   const uint64_t sector = node.yaw * sectors / h.options.yaws;
-  return (&memory_.at<std::atomic<uint64_t>>(h.tiles_offset))[index * sectors + sector];
+  return (&memory_.at<std::atomic<uint64_t>>(h.at.tiles))[index * sectors + sector];
 }
 
 std::vector<FoundPlace> PlaceSearch::found(size_t limit) const {
   std::vector<uint64_t> kept;
-  const auto * const tiles = &memory_.at<const std::atomic<uint64_t>>(head().tiles_offset);
+  const auto * const tiles = &memory_.at<const std::atomic<uint64_t>>(head().at.tiles);
   for (uint64_t i = 0; i < tile_count(map_); ++i) {
     const uint64_t one = tiles[i].load(std::memory_order_relaxed);
     if (points_of(one) >= kept_points()) {

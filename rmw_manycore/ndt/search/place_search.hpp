@@ -39,18 +39,23 @@ struct FoundPlace {
 
 enum class SearchPhase : uint32_t { bound, descend };
 
+/// Where the parts of a search's memory begin [bytes], and its size.
+struct SearchParts {
+  uint64_t points;
+  uint64_t squares;
+  uint64_t bounds;
+  uint64_t order;
+  uint64_t tiles;
+  uint64_t size_bytes;
+};
+
 /// Head of a search's memory. Processes that share the memory share the work.
 struct SearchHead {
   uint64_t id;  ///< unique in the process that laid it out
   uint32_t points;
   SearchOptions options;
   uint32_t squares;  ///< nodes of the root level that have ground, in one direction
-  uint64_t points_offset;
-  uint64_t squares_offset;
-  uint64_t bounds_offset;
-  uint64_t order_offset;
-  uint64_t tiles_offset;
-  uint64_t size_bytes;
+  SearchParts at;
   alignas(64) std::atomic<uint32_t> next;  ///< first root that is not begun
   alignas(64) std::atomic<uint32_t> best;  ///< points of the best place so far
 };
