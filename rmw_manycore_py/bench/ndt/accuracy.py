@@ -11,7 +11,7 @@ that was an improvement. Streets have exact poses.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,6 +24,7 @@ from rmw_manycore_py.bench.ndt.basin import (
     STREETS,
     Place,
     contender,
+    outcome,
     place_of,
     recorded_drive,
     street,
@@ -36,6 +37,7 @@ from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.ndt import MatcherOptions
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
+from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
 
 SCANS, SCANS_OF_STREET = 88, 30
 SEED = 5
@@ -61,6 +63,9 @@ OFF_ICP = f"off {ICP}"
 OFF_ITSELF = "off itself from another guess"
 OF_THREE = "error by three poses, in maps of different scans"
 OFF_EXACT = "off the exact pose, streets"
+THINNED_M = 0.25  # edge of a filter's voxels, each of which leaves one point
+OFF_EXACT_THINNED = f"{OFF_EXACT}, scans of {THINNED_M:g} m"
+CPU_THINNED = f"CPU time of a scan of {THINNED_M:g} m, streets"
 OFF_REFINED = "off the refined reference pose"
 SURFACES = "thickness of surfaces of points that were not aligned"
 REFERENCE, REFINED = "reference poses", "refined reference poses"
@@ -79,14 +84,11 @@ def measure(run: Run) -> list[Result]:
         results = [*_of_recording(recorded_drive(scans)), *_of_three(scans)]
         run.note(f"{QUESTION.name}: refined references")
         results += _of_refined(scans)
-        off_exact: dict[str, list[float]] = {}
         for name in STREETS:
             run.note(f"{QUESTION.name}: {name}")
             place = street(name, run.iterations(SCANS_OF_STREET))
-            exact = _places(place.truths)
-            for own, found in _found(place, SEED).items():
-                off_exact.setdefault(own, []).extend(_apart_cm(found, exact))
-    return results + [_result(OFF_EXACT, name, off) for name, off in off_exact.items()]
+            results += [*_of_street(place), *_of_thinned(place)]
+    return _joined(results)
 
 
 def _found(place: Place, seed: int, names: Sequence[str] = (*OPTIONS, ICP)) -> dict[str, Matrix]:
@@ -115,6 +117,24 @@ def _of_recording(drive: Place) -> list[Result]:
         if ICP in first and name != ICP:
             results.append(_result(OFF_ICP, name, _apart_cm(found, first[ICP])))
     return results
+
+
+def _of_street(place: Place) -> Iterator[Result]:
+    exact = _places(place.truths)
+    for name, places in _found(place, SEED).items():
+        yield _result(OFF_EXACT, name, _apart_cm(places, exact))
+
+
+def _of_thinned(place: Place) -> Iterator[Result]:
+    """Yield errors and CPU times of scans that a voxel filter has thinned."""
+    scans = [voxel_centroids(scan, (THINNED_M,) * 3) for scan in place.scans]
+    thinned = replace(place, scans=scans)
+    for name in (OWN, ICP):
+        align = contender(name, thinned, OPTIONS)
+        if align is not None:
+            one = outcome(align, thinned, (ERROR_M, ERROR_DEG))
+            yield _result(OFF_EXACT_THINNED, name, [CM * error_m for error_m in one.error_m])
+            yield Result(CPU_THINNED, name, "ms", one.cpu_ms)
 
 
 def _of_three(scans: int) -> list[Result]:
@@ -168,6 +188,14 @@ def _apart_cm(a: Matrix, b: Matrix) -> list[float]:
     return [CM * float(distance_m) for distance_m in np.linalg.norm(a - b, axis=1)]
 
 
+def _joined(results: Iterable[Result]) -> list[Result]:
+    """Return the results with all samples of a question and contender in one."""
+    samples: dict[tuple[str, str, str], list[float]] = {}
+    for one in results:
+        samples.setdefault((one.question, one.contender, one.unit), []).extend(one.samples)
+    return [Result(*key, tuple(joined)) for key, joined in samples.items()]
+
+
 def _result(question: str, contender_name: str, samples: Sequence[float]) -> Result:
     return Result(question, contender_name, "cm", tuple(samples))
 
@@ -175,6 +203,10 @@ def _result(question: str, contender_name: str, samples: Sequence[float]) -> Res
 QUESTION = Question(
     "accuracy",
     measure,
-    tuple(Goal(question, OWN, "within", 1.2) for question in JUDGED),
+    (
+        *(Goal(question, OWN, "within", 1.2) for question in JUDGED),
+        Goal(OFF_EXACT_THINNED, OWN, "within", 0.35),
+        Goal(CPU_THINNED, OWN, "within", 8.0),
+    ),
     "all contenders in turn on the first usable CPU",
 )

@@ -107,11 +107,11 @@ def _results(
     for offset in offsets:
         question = home_from(*offset, place.name)
         run.note(f"{question}: {name}")
-        found = _found(align, place, offset)
-        results.append(Result(question, name, "%", found.is_home(), higher_is_better=True))
-        results.append(Result(cpu_from(*offset, place.name), name, "ms", found.cpu_ms))
+        one = outcome(align, place, offset)
+        results.append(Result(question, name, "%", one.is_home(), higher_is_better=True))
+        results.append(Result(cpu_from(*offset, place.name), name, "ms", one.cpu_ms))
         if offset == (ERROR_M, ERROR_DEG):
-            errors_cm = tuple(100.0 * error_m for error_m in found.error_m)
+            errors_cm = tuple(100.0 * error_m for error_m in one.error_m)
             results.append(Result(f"{ERROR}{_in(place.name)}", name, "cm", errors_cm))
     return results
 
@@ -177,7 +177,8 @@ def _options() -> dict[str, MatcherOptions]:
     }
 
 
-def _found(align: Align, place: Place, offset: tuple[float, float]) -> Found:
+def outcome(align: Align, place: Place, offset: tuple[float, float]) -> Found:
+    """Return what the scans of a place give from guesses that are metres and degrees off."""
     generator = np.random.default_rng(SEED)
     distance_m, angle_deg = offset
     errors_m, errors_deg, times_ms = [], [], []
