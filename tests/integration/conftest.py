@@ -78,6 +78,35 @@ def view(start):
         assert program.stop() == 0, program
 
 
+@pytest.fixture(scope="module")
+def chromium(tmp_path_factory):
+    from support.processes.browser import Browser
+
+    opened = Browser(tmp_path_factory.mktemp("downloads"))
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def browser(chromium):
+    yield chromium
+    chromium.forget()
+
+
+@pytest.fixture(scope="module")
+def street(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a directory with a drive of ten scans and its map."""
+    from click.testing import CliRunner
+
+    from rmw_manycore_py.cli.main import cli
+
+    directory = tmp_path_factory.mktemp("street")
+    arguments = ["ndt", "simulate", str(directory), "--length", "8"]
+    result = CliRunner().invoke(cli, arguments)
+    assert result.exit_code == 0, result.output
+    return directory
+
+
 @pytest.fixture
 def timed_mapfile(tmp_path: Path):
     """Return a function that writes a mapfile of nodes of a script, on two clusters in turn."""

@@ -45,20 +45,6 @@ DEADLINE_MS = str(1e3 * TIMEOUT_S)
 PATIENTLY = ("--timeout", str(2 * TIMEOUT_S))  # while matcher and bridge start
 
 
-@pytest.fixture(scope="module")
-def street(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a directory with a drive of ten scans and its map."""
-    from click.testing import CliRunner
-
-    from rmw_manycore_py.cli.main import cli
-
-    directory = tmp_path_factory.mktemp("street")
-    arguments = ["ndt", "simulate", str(directory), "--length", "8"]
-    result = CliRunner().invoke(cli, arguments)
-    assert result.exit_code == 0, result.output
-    return directory
-
-
 @pytest.fixture
 def offload(start, platform) -> Program:
     """Return the matcher on the platform, running."""

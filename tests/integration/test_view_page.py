@@ -28,21 +28,6 @@ NAMED_ROLES += ("searchbox", "slider", "status")
 NAMELESS = ("list", "log", "status")  # read by their content
 
 
-@pytest.fixture(scope="module")
-def chromium(tmp_path_factory):
-    from support.processes.browser import Browser
-
-    opened = Browser(tmp_path_factory.mktemp("downloads"))
-    yield opened
-    opened.close()
-
-
-@pytest.fixture
-def browser(chromium):
-    yield chromium
-    chromium.forget()
-
-
 def test_a_platform_is_seen_from_start_to_end(view, browser, start, platform) -> None:
     _, link = view
     browser.open(link)

@@ -53,6 +53,7 @@ class Listener:
         self._subscribed = subscribed
         self._timers: list[tuple[float, Callable[[], None]]] = []
         self._over = False
+        self._node: Any = None
         self._clock: Any = None
         self._published_s: float | None = None  # the newest message, in a run in virtual time
         if not waits:
@@ -75,7 +76,7 @@ class Listener:
     def run(self, timeout_s: float | None = None) -> None:
         """Spin until stopped, interrupted or timed out."""
         with tool_node(self._platform, sim_time=self._sim_time) as node:
-            self._clock = node.get_clock()
+            self._node, self._clock = node, node.get_clock()
             self._wait_for_topic(node)
             self._subscribe(node)
             if self._subscribed:
@@ -85,6 +86,14 @@ class Listener:
             end_s = float("inf") if timeout_s is None else time.monotonic() + timeout_s
             while not self._over and time.monotonic() < end_s:
                 spin_once(node, max(end_s - time.monotonic(), 0))
+
+    def also(
+        self, topic: str, type_name: str, heard: Callable[[Any], None], qos: QosOptions
+    ) -> None:
+        """Subscribe to another topic, too; only while running."""
+        reliable, kept = offered_policies(_endpoints(self._platform, topic))
+        profile = qos.profile(reliable=reliable, kept=kept)
+        self._node.create_subscription(load_type(type_name), topic, heard, profile)
 
     def _wait_for_topic(self, node: Any) -> None:
         endpoints = _endpoints(self._platform, self._topic)

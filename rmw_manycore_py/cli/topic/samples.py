@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from rmw_manycore_py.cli.common.message_text import Shown, to_plain
+from rmw_manycore_py.cli.topic.cloud_samples import Surroundings, cloud_of, is_cloud
 from rmw_manycore_py.cli.topic.listening import Listener
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
@@ -48,14 +49,23 @@ def main() -> None:
         now_s = time.monotonic()
         if now_s >= due_s:
             due_s = now_s + _PERIOD_S
-            fields = _finite(to_plain(message, _SHOWN))
-            row = {"time_s": time.time(), "fields": fields, "image": image_of(message)}
-            print(json.dumps(row), flush=True)
+            row = {"time_s": time.time(), "fields": _finite(to_plain(message, _SHOWN))}
+            if is_cloud(message):
+                _show({**row, "cloud": cloud_of(message)})
+                surroundings.belong_to(message.header.frame_id)
+            else:
+                _show({**row, "image": image_of(message)})
 
     try:
-        Listener(platform, topic, None, heard, qos=QosOptions(depth=1)).run()
+        listener = Listener(platform, topic, None, heard, qos=QosOptions(depth=1))
+        surroundings = Surroundings(listener, platform, topic, _show)
+        listener.run()
     except ManycoreError as error:
         sys.exit(f"manycore: {error}")
+
+
+def _show(row: dict[str, Any]) -> None:
+    print(json.dumps(row), flush=True)
 
 
 def _finite(plain: Any) -> Any:

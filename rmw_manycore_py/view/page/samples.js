@@ -1,7 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// Messages of the topic that was clicked: fields, an image, and a number over time.
+// Messages of the topic that was clicked: fields, an image or a cloud, and a number over time.
 
 import { Charts } from "./charts.js";
+import { CloudPicture } from "./cloud.js";
 
 const MAX_FIELDS = 200;
 
@@ -13,6 +14,7 @@ export class Samples {
     this.canvas = document.getElementById("samples-image");
     this.picture = document.getElementById("samples-picture");
     this.fields = document.getElementById("samples-fields");
+    this.cloud = new CloudPicture();
     this.charts = new Charts(document.getElementById("samples-plot"), [["", () => true]], false);
     this.topic = null;
     this.socket = null;
@@ -28,6 +30,7 @@ export class Samples {
     this.text.textContent = "";
     this.fields.replaceChildren();
     this.canvas.hidden = this.picture.hidden = true;
+    this.cloud.forget();
     this.plot(null);
   }
 
@@ -61,15 +64,24 @@ export class Samples {
     this.button.setAttribute("aria-pressed", String(this.socket !== null));
   }
 
-  show({ error, time_s, fields, image }) {
+  show({ error, map, judgement, ...message }) {
     if (error !== undefined) {
       this.showState(error);
-      return;
+    } else if (map !== undefined) {
+      this.cloud.showMap(map);
+    } else if (judgement !== undefined) {
+      this.cloud.showJudgement(judgement);
+    } else {
+      this.showMessage(message);
     }
+  }
+
+  showMessage({ time_s, fields, image, cloud }) {
     this.showState(`at ${new Date(time_s * 1000).toLocaleTimeString("en-GB")}`);
     const leaves = [...leavesOf("", fields)].slice(0, MAX_FIELDS);
     this.showFields(leaves);
     this.showImage(image);
+    this.cloud.show(cloud);
     const plotted = leaves.find(([path]) => path === this.plotted);
     if (plotted !== undefined) {
       this.charts.add({ times: [time_s], series: { [this.plotted]: [plotted[1]] }, all: false });

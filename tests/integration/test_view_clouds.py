@@ -1,0 +1,171 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Clouds on the page of `manycore view`, in a real browser."""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+import pytest
+
+from support import IS_MANYCORE, MAPFILES, TIMEOUT_S
+from support.processes.commands import manycore_command
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.needs("chromium", "chromedriver", "selenium", "aiohttp"),
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
+]
+
+# Latched clouds: a square of 20 x 10 m, its north-eastern corner higher, far from the map's origin;
+# a map in the same frame, another one in another frame, and a cloud without points.
+CLOUDS = """
+import numpy as np
+import rclpy
+from builtin_interfaces.msg import Time
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from sensor_msgs.msg import PointCloud2
+from rmw_manycore_py.ndt.messages.point_cloud import encode
+
+rclpy.init()
+kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+corners = np.array([[0, 0, 0], [20, 0, 0], [0, 10, 0], [20, 10, 8]]) + [300.0, 5e6, 40.0]
+clouds = {
+    "square": (corners, "map"), "city": (corners + [5, 5, 0], "map"),
+    "above": (corners, "elsewhere"), "nothing": (corners[:0], "map"),
+}
+nodes = [rclpy.create_node(f"node_of_{name}") for name in clouds]
+for node, (name, (points, frame)) in zip(nodes, clouds.items()):
+    node.create_publisher(PointCloud2, name, kept).publish(encode(points, Time(), frame))
+print("published", flush=True)
+rclpy.spin(nodes[0])
+"""
+
+PIXELS = """
+const { width, height } = document.getElementById("cloud-canvas");
+const copy = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
+copy.drawImage(document.getElementById("cloud-canvas"), 0, 0);
+return [width, Array.from(copy.getImageData(0, 0, width, height).data)];
+"""
+BACK, GREY = (18, 22, 28), (112, 125, 138)
+SCALE_ROWS = 40
+
+
+def pixels_by_colour(browser) -> dict[tuple[int, ...], np.ndarray]:
+    """Return x and y (up) of the pixels of each colour, without the rows of the scale."""
+    width, values = browser.driver.execute_script(PIXELS)
+    picture = np.array(values, np.uint8).reshape(-1, width, 4)[:-SCALE_ROWS, :, :3]
+    found: dict[tuple[int, ...], np.ndarray] = {}
+    for colour in map(tuple, np.unique(picture.reshape(-1, 3), axis=0).tolist()):
+        rows, columns = np.nonzero((picture == colour).all(axis=2))
+        found[colour] = np.column_stack([columns, -rows])
+    assert BACK in found
+    del found[BACK]
+    return found
+
+
+def show_messages(browser, topic: str) -> None:
+    """Select a topic in the list and show its messages."""
+    path = f"//button[.='topic {topic}']"
+    find = "const found = document.evaluate(arguments[0], document).iterateNext();"
+    click = f"{find} found?.click(); return found !== null"  # at once: the list is rebuilt
+    browser.until(lambda: browser.driver.execute_script(click, path), topic)
+    browser.wait_for_text("#details-title", topic)
+    browser.click("#samples")
+    browser.wait_for_text("#samples", "Stop")
+
+
+@pytest.fixture
+def clouds(start, view, browser):
+    """Publish CLOUDS and open the page."""
+    start([sys.executable, "-c", CLOUDS]).wait_for("published")
+    browser.open(view[1])
+    return browser
+
+
+def corners_on(browser) -> np.ndarray:
+    """Return the pixels of the south-western, south-eastern and north-western corners."""
+    colours = pixels_by_colour(browser)
+    (low,) = (colour for colour in colours if colour != GREY and colour[2] > colour[0])
+    x, y = colours[low].T
+    middle = (x.min() + x.max()) / 2, (y.min() + y.max()) / 2
+    inside = [(x < middle[0]) & (y < middle[1]), (x > middle[0]), (y > middle[1])]
+    return np.array([colours[low][one].mean(axis=0) for one in inside])
+
+
+def test_a_cloud_is_drawn_from_above_on_the_map_of_its_frame(clouds) -> None:
+    show_messages(clouds, "/square")
+    clouds.wait_for_text("#cloud-text", "4 points in frame 'map'")
+    clouds.wait_for_text("#cloud-text", "height 40.0 m (blue) to 47.5 m (red); grey: /city")
+    south_west, south_east, north_west = corners_on(clouds)
+    px_per_metre = (south_east - south_west)[0] / 20
+    assert px_per_metre > 1
+    np.testing.assert_allclose(south_east - south_west, [20 * px_per_metre, 0], atol=1)
+    np.testing.assert_allclose(north_west - south_west, [0, 10 * px_per_metre], atol=1)
+    colours = pixels_by_colour(clouds)
+    (high,) = (colour for colour in colours if colour != GREY and colour[0] > colour[2])
+    np.testing.assert_allclose(
+        colours[high].mean(axis=0) - south_west, [20 * px_per_metre, 10 * px_per_metre], atol=1
+    )
+    np.testing.assert_allclose(
+        colours[GREY].min(axis=0) - south_west, [5 * px_per_metre, 5 * px_per_metre], atol=1.5
+    )
+    assert clouds.complaints() == []
+
+
+def test_the_picture_of_a_cloud_is_moved_and_zoomed(clouds) -> None:
+    from selenium.webdriver import ActionChains
+    from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
+
+    show_messages(clouds, "/square")
+    clouds.wait_for_text("#cloud-text", "grey: /city")
+    fitted = corners_on(clouds)
+    clouds.click("#cloud-out")
+    small = corners_on(clouds)
+    np.testing.assert_allclose(1.5 * np.diff(small, axis=0), np.diff(fitted, axis=0), atol=2)
+    canvas = clouds.find("#cloud-canvas")
+    ActionChains(clouds.driver).drag_and_drop_by_offset(canvas, 30, -20).perform()
+    np.testing.assert_allclose(corners_on(clouds) - small, [[30, 20]] * 3, atol=1)
+    clouds.click("#cloud-fit")
+    np.testing.assert_allclose(corners_on(clouds), fitted, atol=1)
+    origin = ScrollOrigin.from_element(canvas)
+    ActionChains(clouds.driver).scroll_from_origin(origin, 0, 100).perform()
+    clouds.until(
+        lambda: np.ptp(corners_on(clouds)[:, 0]) < 0.9 * np.ptp(fitted[:, 0]), "the wheel zooms"
+    )
+
+
+def test_a_cloud_without_points_is_a_text(clouds) -> None:
+    show_messages(clouds, "/nothing")
+    clouds.wait_for_text("#cloud-text.alarm", "the cloud is empty")
+    assert not clouds.find("#cloud-canvas").is_displayed()
+    show_messages(clouds, "/square")
+    clouds.wait_for_text("#cloud-text:not(.alarm)", "4 points")
+    assert clouds.find("#cloud-canvas").is_displayed()
+
+
+def test_an_aligned_scan_is_seen_in_the_map(view, browser, start, street) -> None:
+    run = start(manycore_command("run", MAPFILES / "ndt_offload.yaml"))
+    run.wait_for("ndt_scan_matcher started")
+    browser.open(view[1])
+    show_messages(browser, "/points_aligned")
+    patiently = ("--wait", "--timeout", 2 * TIMEOUT_S, "--deadline", 1e3 * TIMEOUT_S)
+    replay = start(manycore_command("ndt", "replay", street / "drive.npz", *map(str, patiently)))
+    browser.wait_for_text("#cloud-text", "points in frame 'map'")
+    browser.wait_for_text("#cloud-text", "grey: /pointcloud_map")
+    browser.wait_for_text("#cloud-judgement:not(.alarm)", "newest scan: believed")
+    colours = pixels_by_colour(browser)
+    assert len(colours) > 50
+    assert len(colours[GREY]) > 1000
+    assert replay.wait(2 * TIMEOUT_S) == 0, replay
+    assert browser.complaints() == []
+
+
+def test_scans_without_a_cloud_are_judged_too(view, browser, start, street) -> None:
+    run = start(manycore_command("run", MAPFILES / "ndt_offload.yaml"))
+    run.wait_for("ndt_scan_matcher started")
+    browser.open(view[1])
+    show_messages(browser, "/points_aligned")
+    start(manycore_command("ndt", "replay", street / "drive.npz", "--no-map", "--timeout", "30"))
+    browser.wait_for_text("#cloud-judgement.alarm", "newest scan: refused: there is no map yet")
+    assert not browser.find("#cloud-canvas").is_displayed()
