@@ -18,6 +18,10 @@ Job = Callable[[], None]
 Steps = Iterator[bool]
 
 
+class MatchingError(Exception):
+    """What ended the thread; no RuntimeError, which after a shutdown would be taken for rcl's."""
+
+
 class MatchingThread:
     """Matches scans and runs jobs, one at a time; sleeps when idle.
 
@@ -28,7 +32,7 @@ class MatchingThread:
     :param skip: called with each scan overtaken by a newer one.
     :param is_over: returns whether the node's context is shut down: nothing can be published then,
         and errors caused by that end the thread silently.
-    :param failed: called when one of these raised; close() raises the error again.
+    :param failed: called when one of these raised; close() then raises MatchingError.
     """
 
     def __init__(
@@ -80,13 +84,16 @@ class MatchingThread:
             self._changed.notify()
 
     def close(self) -> None:
-        """Stop the thread after its current work; raise the error that ended it earlier, if any."""
+        """Stop the thread after its current work.
+
+        :raises MatchingError: from the error that ended it earlier.
+        """
         with self._changed:
             self._closing = True
             self._changed.notify()
         self._thread.join()
         if self._failure is not None:
-            raise self._failure
+            raise MatchingError(str(self._failure)) from self._failure
 
     def _run(self) -> None:
         try:

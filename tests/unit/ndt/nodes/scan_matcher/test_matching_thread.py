@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from rmw_manycore_py.ndt.nodes.scan_matcher.matching_thread import MatchingThread
+from rmw_manycore_py.ndt.nodes.scan_matcher.matching_thread import MatchingError, MatchingThread
 from rmw_manycore_py.ndt.nodes.scan_matcher.scan_inbox import MAX_WAITING, ScanInbox
 
 pytestmark = pytest.mark.unit
@@ -213,5 +213,5 @@ def test_an_error_of_the_thread_is_reported_and_raised(node):
     node.put("broken", 1.0)
     node.may_match.release()
     assert node.failed.wait(TIMEOUT_S)
-    with pytest.raises(ValueError, match="broken"):
+    with pytest.raises(MatchingError, match="broken"):
         node.thread.close()
