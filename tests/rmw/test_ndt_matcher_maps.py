@@ -27,6 +27,7 @@ from support.nodes.scan_matching import (
     few,
     matcher_command,
     nan_points,
+    own_cluster,
     street_map,
     street_scan,
     two_host_cpus,
@@ -107,11 +108,6 @@ def test_a_map_of_another_frame_is_refused(matched):
     words = "pointcloud_map is in the frame 'odom', expected 'map'"
     spin_until(matched.node, lambda: any(words in s.message for _, s in matched.reports))
     assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
-
-
-def own_cluster() -> _transport.ClusterInfo:
-    with _transport.Platform(os.environ["MANYCORE_PLATFORM"]) as platform:
-        return platform.clusters()[0]
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="the SMEM of a cluster is rmw_manycore's")

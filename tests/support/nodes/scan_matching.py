@@ -22,6 +22,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
 from std_srvs.srv import SetBool
 
+from rmw_manycore_py.native import _transport
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.messages.conversions import matrix_of, nanoseconds, pose_with_covariance
 from rmw_manycore_py.ndt.messages.point_cloud import encode
@@ -232,3 +233,9 @@ def has_pose(report: Any) -> bool:
 def error_m(T: np.ndarray) -> float:
     """Return the distance [m] of a pose from the truth."""
     return poses.distance_m(T, TRUTH)
+
+
+def own_cluster() -> _transport.ClusterInfo:
+    """Return the state of cluster 1."""
+    with _transport.Platform(os.environ["MANYCORE_PLATFORM"]) as platform:
+        return platform.clusters()[0]

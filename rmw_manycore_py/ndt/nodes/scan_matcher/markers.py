@@ -15,6 +15,7 @@ from rmw_manycore_py.ndt.geometry.arrays import Matrix, Poses
 from rmw_manycore_py.ndt.matching.initial_pose import Particle
 from rmw_manycore_py.ndt.messages.conversions import pose_of
 from rmw_manycore_py.ndt.nodes.scan_matcher.colors import colors
+from rmw_manycore_py.ndt.nodes.scan_matcher.detail_publisher import DetailPublisher
 
 ARROW_M = (0.5, 0.1, 0.1)  # length, width, height
 STEPS_TO_RED = 15.0  # as in Autoware
@@ -25,8 +26,8 @@ class PoseMarkers:
 
     def __init__(self, node: Node, map_frame: str) -> None:
         self._map_frame = map_frame
-        self._alignment = node.create_publisher(MarkerArray, "ndt_marker", 10)
-        self._particles = node.create_publisher(MarkerArray, "monte_carlo_initial_pose_marker", 10)
+        self._alignment = DetailPublisher(node, MarkerArray, "ndt_marker", 10)
+        self._particles = DetailPublisher(node, MarkerArray, "monte_carlo_initial_pose_marker", 10)
 
     def alignment(self, stamp: Any, path: Poses) -> None:
         """Publish the guess of a scan and the pose after each step, from blue to red."""
@@ -47,8 +48,10 @@ class PoseMarkers:
             arrows.append((particle.alignment.T_map_sensor, color))
         self._publish(self._particles, stamp, arrows)
 
-    def _publish(self, publisher: Any, stamp: Any, arrows: Sequence[tuple[Matrix, Any]]) -> None:
-        if publisher.get_subscription_count() == 0:
+    def _publish(
+        self, publisher: DetailPublisher, stamp: Any, arrows: Sequence[tuple[Matrix, Any]]
+    ) -> None:
+        if not publisher.is_wanted:
             return
         # Delete the markers of earlier alignments, which may have had more steps.
         markers = [Marker(action=Marker.DELETEALL)]

@@ -26,6 +26,7 @@ from rmw_manycore_py.ndt.messages.conversions import (
 )
 from rmw_manycore_py.ndt.messages.point_cloud import encode
 from rmw_manycore_py.ndt.nodes.scan_matcher.colors import packed_colors
+from rmw_manycore_py.ndt.nodes.scan_matcher.detail_publisher import DetailPublisher
 from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import Interpolated
 
 FLOATS = (
@@ -60,11 +61,11 @@ class MatcherOutputs:
         self._tf = node.create_publisher(TFMessage, "/tf", 100)
         self._iterations = node.create_publisher(Int32Stamped, "iteration_num", 10)
         self._floats = {name: node.create_publisher(Float32Stamped, name, 10) for name in FLOATS}
-        self._pose_arrays = {n: node.create_publisher(PoseArray, n, 10) for n in POSE_ARRAYS}
-        self._clouds = {name: node.create_publisher(PointCloud2, name, 10) for name in CLOUDS}
-        self._scored = node.create_publisher(PointCloud2, "voxel_score_points", 10)
+        self._pose_arrays = {n: DetailPublisher(node, PoseArray, n, 10) for n in POSE_ARRAYS}
+        self._clouds = {name: DetailPublisher(node, PointCloud2, name, 10) for name in CLOUDS}
+        self._scored = DetailPublisher(node, PointCloud2, "voxel_score_points", 10)
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self._map = node.create_publisher(PointCloud2, "debug/loaded_pointcloud_map", kept)
+        self._map = DetailPublisher(node, PointCloud2, "debug/loaded_pointcloud_map", kept)
 
     def accepted_pose(self, stamp: Any, T_map_base: Matrix, covariance: Matrix) -> None:
         """Publish a reliable pose."""
@@ -104,7 +105,7 @@ class MatcherOutputs:
 
     def cloud(self, name: str, stamp: Any, points_base: Points, T_map_base: Matrix) -> None:
         """Publish one of CLOUDS in the map frame, if there are subscriptions."""
-        if self._clouds[name].get_subscription_count() > 0:
+        if self._clouds[name].is_wanted:
             points = poses.transform(T_map_base, points_base.astype(np.float64))
             self._clouds[name].publish(encode(points, stamp, self._map_frame))
 
@@ -116,7 +117,7 @@ class MatcherOutputs:
         scores_of: Callable[[Points, Matrix], NDArray[np.float32]],
     ) -> None:
         """Publish points with voxels nearby, coloured by score, if there are subscriptions."""
-        if self._scored.get_subscription_count() == 0:
+        if not self._scored.is_wanted:
             return
         scores = scores_of(points_base, T_map_base)
         seen = np.isfinite(scores)
@@ -127,7 +128,7 @@ class MatcherOutputs:
 
     def _several(self, name: str, stamp: Any, several: Sequence[Matrix]) -> None:
         """Publish one of POSE_ARRAYS, if there are poses and subscriptions."""
-        if several and self._pose_arrays[name].get_subscription_count() > 0:
+        if several and self._pose_arrays[name].is_wanted:
             message = PoseArray(poses=[pose_of(T) for T in several])
             message.header.stamp, message.header.frame_id = stamp, self._map_frame
             self._pose_arrays[name].publish(message)

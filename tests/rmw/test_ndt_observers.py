@@ -1,0 +1,48 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`ndt_scan_matcher` with observers: what they subscribe to must not disturb the matching."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+from sensor_msgs.msg import PointCloud2
+
+from rmw_manycore_py.native import _transport
+from support import IS_MANYCORE
+from support.nodes.ros import spin_until
+from support.nodes.scan_matching import (
+    NEAR,
+    error_m,
+    matcher_command,
+    own_cluster,
+    street_map,
+    street_scan,
+)
+
+pytestmark = pytest.mark.rmw
+LEFT_BYTES = 32 * 1024  # less than a cloud
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="the SMEM of a cluster is rmw_manycore's")
+def test_clouds_without_room_are_missing_but_not_the_poses(stack, start):
+    program = start(matcher_command(), cluster=1)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    stack.pose_of(street_scan(), NEAR)
+    now = own_cluster()
+    reserve = min(now.smem_bytes // 8, 8 << 20)  # only control blocks are allocated there
+    free = now.smem_bytes - now.used_bytes - reserve
+    platform = os.environ["MANYCORE_PLATFORM"]
+    _transport.charge_smem(platform, free - LEFT_BYTES)
+
+    clouds = []
+    stack.node.create_subscription(PointCloud2, "points_aligned", clouds.append, 10)
+    for _ in range(3):
+        assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+    program.wait_for("points_aligned is not published: .* cluster 1 has no room for")
+    assert clouds == []
+
+    _transport.charge_smem(platform, 0)
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+    spin_until(stack.node, lambda: clouds)
