@@ -5,14 +5,20 @@ from __future__ import annotations
 
 import os
 
+import numpy as np
 import pytest
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
 
 from rmw_manycore_py.native import _transport
+from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
+from rmw_manycore_py.ndt.maps.map_tiles import open_map, write_tiles
+from rmw_manycore_py.ndt.messages.point_cloud import decode
 from support import IS_MANYCORE
 from support.nodes.ros import spin_until
 from support.nodes.scan_matching import (
     NEAR,
+    TRUTH,
     error_m,
     matcher_command,
     own_cluster,
@@ -46,3 +52,25 @@ def test_clouds_without_room_are_missing_but_not_the_poses(stack, start):
     _transport.charge_smem(platform, 0)
     assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
     spin_until(stack.node, lambda: clouds)
+
+
+def test_an_observer_sees_the_tiles_of_the_map(stack, start, tmp_path):
+    """Subscribed after the map was loaded, and again after the vehicle needed other tiles."""
+    beside = street_map() + np.float32([200.0, 0.0, 0.0])
+    write_tiles(tmp_path / "tiles", np.concatenate([street_map(), beside]), 20.0, ".npz")
+    more = {"dynamic_map_loading__map_radius": 60.0, "dynamic_map_loading__lidar_radius": 5.0}
+    start(matcher_command(map_path=tmp_path / "tiles", **more), cluster=2)
+    stack.wait_for_matcher()
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+
+    maps = []
+    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    stack.node.create_subscription(PointCloud2, "debug/loaded_pointcloud_map", maps.append, kept)
+    spin_until(stack.node, lambda: maps)
+    tiles = open_map(tmp_path / "tiles")
+    np.testing.assert_array_equal(decode(maps[0]), tiles.around(*TRUTH[:2, 3], 60.0)[1])
+
+    there = from_xyz_rpy((200.0, 0.0, 0.0))
+    expected = tiles.around(*there[:2, 3], 60.0)[1]
+    spin_until(stack.node, lambda: stack.send(street_scan(), there) and len(maps) > 1)
+    np.testing.assert_array_equal(decode(maps[1]), expected)

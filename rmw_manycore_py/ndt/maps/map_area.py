@@ -18,7 +18,7 @@ class MapArea:
         self._radius_m = radius_m
         self._update_distance_m = update_distance_m
         self._centre: tuple[float, float] | None = None
-        self._files: TileFiles | None = None  # None: nothing usable is loaded
+        self.files: TileFiles | None = None  # None: nothing usable is loaded
 
     def distance_m(self, x: float, y: float) -> float:
         """Return the distance to where the map was last loaded; infinity before the first load."""
@@ -47,11 +47,11 @@ class MapArea:
             return None
         files = self._tiles.files_around(x, y, self._radius_m)
         self._centre = (x, y)
-        if files == self._files:
+        if files == self.files:
             return None
-        self._files = files
+        self.files = files
         return files
 
     def forget_tiles(self) -> None:
         """Reload at the next update, even the same tiles: the loaded ones cannot be used."""
-        self._files = None
+        self.files = None

@@ -19,6 +19,7 @@ from rmw_manycore_py.errors import what_is_wrong
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.maps import map_process
 from rmw_manycore_py.ndt.maps.map_process import HeldMap, Source
+from rmw_manycore_py.ndt.maps.map_tiles import TileFiles
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 from rmw_manycore_py.process.helper_process import HelperProcess, leave_real_time
@@ -94,6 +95,10 @@ class MapBuilder:
             waiting, self._waiting = self._waiting, None
             self._running = self._start(waiting) if waiting is not None else None
         return built
+
+    def sample(self, files: TileFiles, max_count: int) -> Future[Points]:
+        """Have the process read at most `max_count` points (N, 3) of tiles."""
+        return self._executor.submit(self._helper.call, map_process.sample_of, files, max_count)
 
     def close(self) -> None:
         """Stop the process and the thread."""

@@ -9,6 +9,7 @@ from typing import TypeAlias
 
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.precision import why_coarse
+from rmw_manycore_py.ndt.geometry.thinning import spread_indices
 from rmw_manycore_py.ndt.maps.map_tiles import TileFiles
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
@@ -51,6 +52,12 @@ def built(
     returned = points if with_points else None
     where = voxel_map.shared_paths, voxel_map.own_likelihood
     return voxel_map, HeldMap(*where, returned, why_coarse(points))
+
+
+def sample_of(files: TileFiles, max_count: int) -> Points:
+    """Return points (N, 3) of tiles, spread evenly."""
+    points = files.read(_tiles)
+    return points[spread_indices(len(points), max_count)]
 
 
 def let_go(shared_paths: list[str]) -> None:

@@ -25,6 +25,7 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.align_services import AlignParts, Al
 from rmw_manycore_py.ndt.nodes.scan_matcher.cluster_memory import ClusterMemory
 from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
 from rmw_manycore_py.ndt.nodes.scan_matcher.frame_tree import FrameTree
+from rmw_manycore_py.ndt.nodes.scan_matcher.loaded_map import LoadedMap
 from rmw_manycore_py.ndt.nodes.scan_matcher.lost import search_region
 from rmw_manycore_py.ndt.nodes.scan_matcher.map_supply import MapSupply
 from rmw_manycore_py.ndt.nodes.scan_matcher.markers import PoseMarkers
@@ -55,6 +56,7 @@ from rmw_manycore_py.ndt.nodes.support.watched import watched
 from rmw_manycore_py.ndt.trust.looks import ScanAt
 from rmw_manycore_py.process.cpu_time import tree_cpu_s
 
+STATUSES = ("scan_matching_status", "map_update_status", "trigger_node_service_status")
 MAP_UPDATE_PERIOD_S = 1.0
 SCAN_DEPTH = 5  # deep enough that bursts are counted as skipped, not lost in a queue
 
@@ -90,15 +92,9 @@ class NdtScanMatcher(Node):
         self._rejected_in_a_row = 0
         self._skipped = 0
         self._outputs = MatcherOutputs(self, self._p.map_frame, self._p.ndt_base_frame)
+        self._loaded_map = LoadedMap(self, self._p.map_frame, self._map)
         self._markers = PoseMarkers(self, self._p.map_frame)
-        self._diagnostics = {
-            name: Diagnostics(self, name)
-            for name in (
-                "scan_matching_status",
-                "map_update_status",
-                "trigger_node_service_status",
-            )
-        }
+        self._diagnostics = {name: Diagnostics(self, name) for name in STATUSES}
         self._poses = PoseInputs(
             self, self._p, self._own, lambda: self._is_activated, self._on_guess
         )
@@ -326,7 +322,7 @@ class NdtScanMatcher(Node):
             built = f"{voxel_map.voxels} voxels, built in {self._map.duration_ms:.0f} ms"
             self.get_logger().info(f"matching to a map of {built}")
             if points is not None:
-                self._outputs.loaded_map(self.get_clock().now().to_msg(), points)
+                self._loaded_map.publish(points)
 
     def _aligned_to(self, scan: Points, T_map_guess: Matrix) -> Alignment:
         """Align from one of many guesses; only the pose is needed."""
@@ -336,6 +332,8 @@ class NdtScanMatcher(Node):
     def _on_timer(self) -> None:
         if self._is_activated:
             self._map.look_after_loader()
+        if not self._p.publish_loaded_map:
+            self._loaded_map.look()
         self._thread.post(self._update_map)
 
     def _update_map(self) -> None:

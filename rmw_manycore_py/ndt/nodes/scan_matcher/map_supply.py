@@ -8,6 +8,7 @@ topic.
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import Future
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.maps.map_area import MapArea
 from rmw_manycore_py.ndt.maps.map_builder import MapBuilder
-from rmw_manycore_py.ndt.maps.map_tiles import open_map
+from rmw_manycore_py.ndt.maps.map_tiles import TileFiles, open_map
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 from rmw_manycore_py.ndt.messages.point_cloud import decode
@@ -130,6 +131,15 @@ class MapSupply:
         self._warning = built.warning
         self.duration_ms = built.duration_ms
         return built.voxel_map, built.points
+
+    @property
+    def loaded_files(self) -> TileFiles | None:
+        """Files of the map around the vehicle; None if it comes from elsewhere, or is not set."""
+        return self._area.files if self._area is not None and self.is_set else None
+
+    def sample(self, files: TileFiles, max_count: int) -> Future[Points]:
+        """Have at most `max_count` points (N, 3) of files read in the background."""
+        return self._builder.sample(files, max_count)
 
     def _refuse(self, problem: str) -> None:
         """Keep the current map; without a problem the required tiles had not changed."""

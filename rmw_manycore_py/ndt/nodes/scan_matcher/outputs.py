@@ -11,7 +11,6 @@ from autoware_internal_debug_msgs.msg import Float32Stamped, Int32Stamped
 from geometry_msgs.msg import PoseArray, PoseStamped, PoseWithCovarianceStamped
 from numpy.typing import NDArray
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
 from tf2_msgs.msg import TFMessage
 
@@ -64,8 +63,6 @@ class MatcherOutputs:
         self._pose_arrays = {n: DetailPublisher(node, PoseArray, n, 10) for n in POSE_ARRAYS}
         self._clouds = {name: DetailPublisher(node, PointCloud2, name, 10) for name in CLOUDS}
         self._scored = DetailPublisher(node, PointCloud2, "voxel_score_points", 10)
-        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self._map = DetailPublisher(node, PointCloud2, "debug/loaded_pointcloud_map", kept)
 
     def accepted_pose(self, stamp: Any, T_map_base: Matrix, covariance: Matrix) -> None:
         """Publish a reliable pose."""
@@ -94,10 +91,6 @@ class MatcherOutputs:
 
         self._several("multi_initial_pose", stamp, alignment.guesses_around)
         self._several("multi_ndt_pose", stamp, alignment.results_around)
-
-    def loaded_map(self, stamp: Any, points: Points) -> None:
-        """Publish the loaded map, transient local."""
-        self._map.publish(encode(points, stamp, self._map_frame))
 
     def number(self, name: str, stamp: Any, value: float) -> None:
         """Publish one of FLOATS."""
