@@ -18,15 +18,20 @@ TIMEOUT_S = 30.0
 HISTORY_S = 20.0  # time shown by the charts
 
 
-def main(link: str, topic: str, file: str) -> None:
-    """Start a trace, select a topic on the page, wait for its charts, and take the screenshot."""
+def chromium() -> webdriver.Chrome:
+    """Return headless Chromium with one window."""
     options = webdriver.ChromeOptions()
     options.binary_location = shutil.which("chromium") or ""
     options.add_argument("--headless=new")
     options.add_argument("--window-size=1500,1000")
     if os.geteuid() == 0:
         options.add_argument("--no-sandbox")
-    with webdriver.Chrome(options, webdriver.ChromeService(shutil.which("chromedriver"))) as driver:
+    return webdriver.Chrome(options, webdriver.ChromeService(shutil.which("chromedriver")))
+
+
+def main(link: str, topic: str, file: str) -> None:
+    """Start a trace, select a topic on the page, wait for its charts, and take the screenshot."""
+    with chromium() as driver:
         waiting = WebDriverWait(driver, TIMEOUT_S)
         driver.get(link)
         selector = f"[data-topic='{topic}']"
