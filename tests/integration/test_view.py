@@ -220,6 +220,35 @@ def test_a_platform_that_is_half_removed_has_ended(start, platform) -> None:
     shutil.rmtree(PLATFORMS / platform)
 
 
+# A node that publishes 30 messages within 0.3 s.
+BURST = """
+import rclpy
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("burst")
+publisher = node.create_publisher(String, "words", 100)
+while publisher.get_subscription_count() == 0:
+    rclpy.spin_once(node, timeout_sec=0.05)
+words = iter([f"word {number}." for number in range(30)])
+
+def publish():
+    if word := next(words, None):
+        publisher.publish(String(data=word))
+
+node.create_timer(0.01, publish)
+rclpy.spin(node)
+"""
+
+
+def test_the_last_message_of_a_burst_is_shown(start, platform) -> None:
+    start([sys.executable, "-c", BURST])
+    with closing(Watch(platform)) as watch:
+        wait_until(lambda: (look := watch.look()) and "/words" in look.graph.topics, "the topic")
+    program = [sys.executable, "-m", "rmw_manycore_py.cli.topic.samples", platform, "/words"]
+    start(program).wait_for(r"word 29\.")
+
+
 def test_a_worker_in_the_place_of_a_killed_one_is_seen(start, platform) -> None:
     matcher = start([sys.executable, "-c", MATCHER])
     matcher.wait_for("matching")

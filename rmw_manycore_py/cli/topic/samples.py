@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Program of `manycore view`: the newest messages of a topic, as lines of JSON.
 
-Arguments: platform, topic. Of a fast topic only some are printed.
+Arguments: platform, topic. Of a fast topic only some are printed, but always the last one.
 """
 
 from __future__ import annotations
@@ -42,22 +42,27 @@ _GREY = {"mono8": "u1", "8UC1": "u1", "mono16": "u2", "16UC1": "u2", "32FC1": "f
 def main() -> None:
     """Print messages until interrupted; errors go to standard error."""
     platform, topic = sys.argv[1:]
-    due_s = 0.0
+    newest: Any = None  # that is not shown yet
 
     def heard(message: Any) -> None:
-        nonlocal due_s
-        now_s = time.monotonic()
-        if now_s >= due_s:
-            due_s = now_s + _PERIOD_S
-            row = {"time_s": time.time(), "fields": _finite(to_plain(message, _SHOWN))}
-            if is_cloud(message):
-                _show({**row, "cloud": cloud_of(message)})
-                surroundings.belong_to(message.header.frame_id)
-            else:
-                _show({**row, "image": image_of(message)})
+        nonlocal newest
+        newest = message
+
+    def show_newest() -> None:
+        nonlocal newest
+        message, newest = newest, None
+        if message is None:
+            return
+        row = {"time_s": time.time(), "fields": _finite(to_plain(message, _SHOWN))}
+        if is_cloud(message):
+            _show({**row, "cloud": cloud_of(message)})
+            surroundings.belong_to(message.header.frame_id)
+        else:
+            _show({**row, "image": image_of(message)})
 
     try:
         listener = Listener(platform, topic, None, heard, qos=QosOptions(depth=1))
+        listener.every(_PERIOD_S, show_newest)
         surroundings = Surroundings(listener, platform, topic, _show)
         listener.run()
     except ManycoreError as error:
