@@ -43,7 +43,7 @@ def beyond_vehicles(scan: ScanPoints, T_map_sensor: Pose) -> ScanPoints:
 def _ground_m(points: ScanPoints) -> ScanPoints:
     """Return for each point (N, 3) the lowest z around it."""
     columns = np.floor(points[:, :2] / COLUMN_M).astype(np.int64)
-    row = int(2 * FARTHEST_M / COLUMN_M) + 2
+    row = int(4 * FARTHEST_M / COLUMN_M)  # a turn may lead farther along an axis
     found, of_point = np.unique(columns[:, 0] * row + columns[:, 1], return_inverse=True)
     lowest_m = np.full(len(found), np.inf, np.float32)
     np.minimum.at(lowest_m, of_point, points[:, 2])

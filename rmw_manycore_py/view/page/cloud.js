@@ -203,7 +203,7 @@ function paintPoints({ pixels, width, height }, { cloud, centre, pxPerMetre, siz
 function drawScale(context, height, pxPerMetre) {
   const most = 120 / pxPerMetre;
   const power = 10 ** Math.floor(Math.log10(most));
-  const metres = [5, 2, 1].find((one) => one * power <= most) * power;
+  const metres = ([5, 2].find((one) => one * power <= most) ?? 1) * power;
   const length = metres * pxPerMetre;
   context.fillStyle = context.strokeStyle = "#ffffff";
   context.font = "12px system-ui, sans-serif";
