@@ -55,8 +55,8 @@ def built(
 
 
 def sample_of(files: TileFiles, max_count: int) -> Points:
-    """Return points (N, 3) of tiles, spread evenly."""
-    points = files.read(_tiles)
+    """Return points (N, 3) of tiles, spread evenly; keeps none that the maps do not."""
+    points = files.read(dict(_tiles))
     return points[spread_indices(len(points), max_count)]
 
 
