@@ -23,8 +23,6 @@ python scripts/progress.py "$build.log" "compiling native tests in $build" \
 # - test_periods counts for a minute what other tests count a few times.
 # - test_damaged_running crashes on damaged memory, on which a sanitizer's report may hang.
 # - test_closed_descriptors closes descriptors in use by other threads, which is a data race.
-# - test_unmappable_cluster uses up all descriptors; the undefined-behaviour sanitizer needs one to
-#   examine an object, and reports a valid one as invalid without.
 # - test_process_threads waits until all threads of a process sleep; the thread sanitizer has one of
 #   its own in each process, which never does for long.
 # - test_damage reads damaged files by one thread, which the address sanitizer looks at.
@@ -33,7 +31,7 @@ case "$*" in
   *SANITIZE=thread*)
     skipped="^($always|test_closed_descriptors|test_damage|test_process_threads)$"
     ;;
-  *SANITIZE*) skipped="^($always|test_unmappable_cluster)$" ;;
+  *SANITIZE*) skipped="^($always)$" ;;
   *) skipped='^$' ;;
 esac
 # One more than CPUs: those that step through processes wait for each step.
