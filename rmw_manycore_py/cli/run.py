@@ -22,7 +22,7 @@ from rmw_manycore_py.cli.common.starting import (
     virtual_time,
 )
 from rmw_manycore_py.launch.events import Event
-from rmw_manycore_py.trace.files import SUFFIXES, require_format
+from rmw_manycore_py.trace.formats import SUFFIXES, require_format
 
 
 @click.command(

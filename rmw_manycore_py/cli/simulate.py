@@ -31,7 +31,8 @@ from rmw_manycore_py.prediction.json_data import as_data
 from rmw_manycore_py.prediction.sweep import sweep_of
 from rmw_manycore_py.prediction.target_file import target_named
 from rmw_manycore_py.profile.files import load
-from rmw_manycore_py.trace.files import SUFFIXES, save
+from rmw_manycore_py.trace.files import save
+from rmw_manycore_py.trace.formats import SUFFIXES
 
 
 @click.command(

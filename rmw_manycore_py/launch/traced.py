@@ -9,8 +9,6 @@ from pathlib import Path
 
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native.errors import translate_native_errors
-from rmw_manycore_py.trace.files import save
-from rmw_manycore_py.trace.recorded import recorded
 
 _USUAL = 0  # default events per thread
 
@@ -18,6 +16,10 @@ _USUAL = 0  # default events per thread
 @contextmanager
 def traced(platform: str, path: Path, notice: Callable[[str], None]) -> Iterator[None]:
     """Trace a platform during the block, then save the trace before the platform is removed."""
+    # Loaded when needed: few runs are traced, and all would wait for numpy.
+    from rmw_manycore_py.trace.files import save
+    from rmw_manycore_py.trace.recorded import recorded
+
     with translate_native_errors():
         _transport.start_trace(platform, clusters=(), nodes=(), events=_USUAL, discard=False)
     yield

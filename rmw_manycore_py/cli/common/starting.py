@@ -19,8 +19,6 @@ from rmw_manycore_py.launch.platform import occupied_cores
 from rmw_manycore_py.launch.run import Mode, Run
 from rmw_manycore_py.launch.timekeeper import PlatformModel, VirtualTime
 from rmw_manycore_py.mapfile import Mapfile, Placement, load_mapfile, resolve
-from rmw_manycore_py.prediction.target_file import target_named
-from rmw_manycore_py.profile.files import load
 
 
 def starting_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -126,6 +124,10 @@ def virtual_time(
     if len(names) > 1:
         raise click.UsageError(f"{' and '.join(names)} exclude each other.")
     if profile is not None:
+        # Loaded when needed: most runs have no profile.
+        from rmw_manycore_py.prediction.target_file import target_named
+        from rmw_manycore_py.profile.files import load
+
         require(SIMPY)
         simulated = platform_name or "host"
         target_named(simulated)

@@ -11,8 +11,8 @@ from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.output_file import OutputFile
 from rmw_manycore_py.cli.common.printing import counted, echo, print_notices
 from rmw_manycore_py.cli.common.view import require_platform
-from rmw_manycore_py.trace.files import SUFFIXES, require_format
 from rmw_manycore_py.trace.files.saving import save_recorded
+from rmw_manycore_py.trace.formats import SUFFIXES, require_format
 
 
 @click.command(

@@ -5,19 +5,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rmw_manycore_py.errors import ManycoreError, missing_library
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.trace.atomic_file import atomic_write
 from rmw_manycore_py.trace.events import Trace
 from rmw_manycore_py.trace.files import chrome, perfetto, table
-
-PERFETTO = (".pftrace", ".perfetto-trace")
-SUFFIXES = (".json", ".csv", *PERFETTO)
-
-
-def require_format(path: Path) -> None:
-    """Raise ManycoreError if what writes a file of this suffix is missing: before the events."""
-    if path.suffix in PERFETTO:
-        missing_library.require(missing_library.PERFETTO)
 
 
 def save(trace: Trace, path: Path) -> None:

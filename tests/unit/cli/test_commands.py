@@ -55,6 +55,39 @@ def test_every_summary_fits_into_its_line() -> None:
     assert [text for text in summaries if len(text) > MAX_SUMMARY] == []
 
 
+def test_summaries_in_the_help_are_those_of_the_commands() -> None:
+    groups = [("manycore", cli), *all_commands()]
+    for name, group in groups:
+        if isinstance(group, click.Group):
+            context = click.Context(group, info_name=name)
+            shown = [line.split(maxsplit=1) for line in group.get_help(context).splitlines()]
+            for verb in group.list_commands(context):
+                command = group.get_command(context, verb)
+                assert command is not None
+                assert [verb, command.get_short_help_str(MAX_SUMMARY)] in shown
+
+
+def test_help_loads_no_command() -> None:
+    program = (
+        "import sys; from rmw_manycore_py.cli.main import VERBS, cli\n"
+        "cli(['--help'], standalone_mode=False)\n"
+        "print([place for place in VERBS.values() if place.partition(':')[0] in sys.modules])"
+    )
+    assert _last_line_of(program) == "[]"
+
+
+def test_run_does_not_load_what_few_runs_need() -> None:
+    program = "import sys, rmw_manycore_py.cli.run; print('numpy' in sys.modules)"
+    assert _last_line_of(program) == "False"
+
+
+def _last_line_of(program: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, check=True
+    )
+    return done.stdout.splitlines()[-1]
+
+
 def test_every_option_has_help() -> None:
     found = {(name, option) for name, command in all_commands() for option in command.params}
     options = [(name, one) for name, one in found if isinstance(one, click.Option)]

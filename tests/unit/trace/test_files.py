@@ -15,8 +15,9 @@ from rmw_manycore_py.trace.events import (
     Thread,
     endpoint_id,
 )
-from rmw_manycore_py.trace.files import SUFFIXES, load, save
+from rmw_manycore_py.trace.files import load, save
 from rmw_manycore_py.trace.flows import flows_of
+from rmw_manycore_py.trace.formats import SUFFIXES
 from rmw_manycore_py.trace.latency import ChainLatency, Part
 from rmw_manycore_py.trace.slices import What, name_of, slices_of
 from support.samples.traces import CAMERA, INCARNATION, US, evaluated, example
