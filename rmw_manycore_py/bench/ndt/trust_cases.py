@@ -174,9 +174,9 @@ def looked_again(case: Case, shares: Shares) -> Case:
         return replace(case, alignment=world.matcher.explained(found, scan))
 
     if case.judged(shares).is_score_low or case.alignment.is_degenerate:
-        closer = world.matcher.align_once(scan, case.guess, only_pose=True, is_close=True)
-        if explained(closer).judged(shares).is_believed:
-            return explained(closer)
+        for closer in world.matcher.closer_looks(scan, case.guess, only_pose=True):
+            if (looked := explained(closer)).judged(shares).is_believed:
+                return looked
     if not case.before:  # left to a search
         return case
     found = world.matcher.second_look(

@@ -149,18 +149,35 @@ class Matcher:
         *,
         only_pose: bool = False,
         is_wide: bool = False,
-        is_close: bool = False,
     ) -> Alignment:
         """Return the result of :meth:`align` without a second look.
 
         :param is_wide: align to the levels of a second look first.
-        :param is_close: align to the finest level alone, at first without what may be vehicles.
         """
         asked = self._asked(points, T_map_guess, T_map_regularization)
         if isinstance(asked, Alignment):
             return asked
-        found = self._closely(asked) if is_close else self._aligned(asked, is_wide=is_wide)
+        found = self._aligned(asked, is_wide=is_wide)
         return found if only_pose else self._with_covariance(found, asked)
+
+    def closer_looks(
+        self,
+        points: ArrayLike,
+        T_map_guess: ArrayLike,
+        T_map_regularization: ArrayLike | None = None,
+        *,
+        only_pose: bool = False,
+    ) -> Iterator[Alignment]:
+        """Yield alignments to the finest level alone, each computed when it is asked for.
+
+        The first begins without what may be vehicles (vehicles.py), the second at the guess.
+        """
+        asked = self._asked(points, T_map_guess, T_map_regularization)
+        if isinstance(asked, Alignment):
+            yield asked
+            return
+        for found in self._closely(asked):
+            yield found if only_pose else self._with_covariance(found, asked)
 
     def second_look(
         self,
@@ -218,18 +235,24 @@ class Matcher:
             yield self._looked_around
 
     def _looked_closer(self, first: Alignment, asked: Question) -> Alignment:
-        """Return what fits better: `first`, or the alignment to the finest level alone."""
-        first = self.explained(first, asked.scan)
-        closer = self.explained(self._closely(asked), asked.scan)
-        return max((first, closer), key=lambda one: max(one.fit, one.explained_score))
+        """Return what fits best: `first`, or an alignment to the finest level alone."""
+        best, looks = self.explained(first, asked.scan), first.looks
+        for found in self._closely(asked):
+            closer = self.explained(found, asked.scan)
+            best = max((best, closer), key=lambda one: max(one.fit, one.explained_score))
+            looks += 1
+            if self._convinces(best):
+                break
+        return replace(best, looks=looks)
 
-    def _closely(self, asked: Question) -> Alignment:
-        """Align to the finest level from where what cannot be a vehicle leads (vehicles.py)."""
+    def _closely(self, asked: Question) -> Iterator[Alignment]:
+        """Align to the finest level from where what cannot be a vehicle leads, then as asked."""
         seen = beyond_vehicles(asked.scan, asked.guess)
         start = self._aligned(replace(asked, scan=seen), is_close=True, polish=False)
         if not start.is_degenerate:
-            asked = replace(asked, guess=start.T_map_sensor)
-        return self._aligned(asked, is_close=True)
+            there = replace(asked, guess=start.T_map_sensor)
+            yield self._aligned(there, is_close=True)
+        yield self._aligned(asked, is_close=True)
 
     def _looked_again(self, first: Alignment, asked: Question, convinces: Convinces) -> Alignment:
         def aligned_widely(start: Pose) -> Alignment:

@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Aligns a scan, and again where the result is refused: at most eleven times.
+"""Aligns a scan, and again where the result is refused: at most twelve times.
 
 ```
  from the guess ── refused ─► from where the motion leads ── refused ─► finest level alone
-   1                            up to 3                         if the score refuses: 2
+   1                            up to 3                         if the score refuses: 3
                                                             ── refused ─► second look
                                                                            up to 5
 ```
@@ -84,9 +84,12 @@ class Looks:
         before, verdict = first
         if not (verdict.is_score_low or before.is_degenerate):
             return None
-        expected = verdict.expected
-        found = self._from(scan, scan.guess if expected is None else expected.poses[0], closer=True)
-        return found if found[1].is_believed else None
+        start = scan.guess if verdict.expected is None else verdict.expected.poses[0]
+        for closer in self._matcher.closer_looks(scan.points, start, scan.regularization):
+            found = self._judged(scan, closer)
+            if found[1].is_believed:
+                return found
+        return None
 
     def _second_look(self, scan: ScanAt, first: Looked) -> Looked | None:
         if not self._judge.may_look_again(first[1]):
@@ -102,9 +105,9 @@ class Looks:
         found = self._judged(scan, alignment)
         return found if found[1].is_believed else None
 
-    def _from(self, scan: ScanAt, start: Pose, *, closer: bool = False) -> Looked:
-        align = self._matcher.align_once
-        return self._judged(scan, align(scan.points, start, scan.regularization, is_close=closer))
+    def _from(self, scan: ScanAt, start: Pose) -> Looked:
+        found = self._matcher.align_once(scan.points, start, scan.regularization)
+        return self._judged(scan, found)
 
     def _judged(self, scan: ScanAt, alignment: Alignment) -> Looked:
         """Judge an alignment; if nothing but its score refuses it, with what may explain that."""

@@ -96,6 +96,6 @@ def test_unexplained_scores_of_vehicles_are_refused(drive):
     matcher = SerialMatcher(DEFAULT)
     matcher.set_map(voxel_map)
     scan = scan_points(changed.scan(20))
-    found = matcher.align_once(scan, changed.poses[20], only_pose=True, is_close=True)
+    found = next(matcher.closer_looks(scan, changed.poses[20], only_pose=True))
     assert not believed(found, voxel_map)
     assert found.nearest_voxel_likelihood < 0.75 * voxel_map.own_likelihood

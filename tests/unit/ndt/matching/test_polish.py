@@ -56,7 +56,7 @@ def test_few_points_approach_the_maximum_and_all_refine_it():
     assert found.first.points_in_map < 0.5 * len(scan)
     assert found.score == polishing.score(scan, found.T_map_sensor).score
     np.testing.assert_array_equal(found.path[-1], found.T_map_sensor)
-    with_all = polishing.align_once(scan, true, is_close=True)  # not thinned
+    with_all = next(polishing.closer_looks(scan, true))  # not thinned
     assert with_all.first.points_in_map > 0.9 * len(scan)
     assert errors(found.T_map_sensor, with_all.T_map_sensor)[0] < 0.002
 
