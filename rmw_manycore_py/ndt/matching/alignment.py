@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -56,7 +56,7 @@ class Alignment:
     :param T_map_sensor: (4, 4) final pose; always finite: the guess if alignment was impossible,
         the identity if the guess was invalid.
     :param covariance: (6, 6) of x, y, z [m], roll, pitch, yaw [rad].
-    :param iterations: number of steps.
+    :param iterations: number of steps, on all maps.
     :param converged: False if the alignment hit the iteration limit or ended away from a maximum;
         ``why`` names which. True does not imply that the pose is right: see ``ndt.trust``.
     :param share_in_map: fraction of finite points with voxels in their neighbourhood, 0 to 1.
@@ -65,7 +65,8 @@ class Alignment:
         number of points: large along a tunnel, for any scan size.
     :param first: score at the start of the steps on the finest map; without coarser maps, the score
         of the guess.
-    :param path: (n, 4, 4) the guess and the pose after each step, on all maps; at most 64.
+    :param path: (n, 4, 4) the guess and the pose after each step, on all maps; at most 64 of
+        each alignment that led to the result.
     :param explained_score: score of what the map can contradict (evidence.py); 0 if not computed.
     :param looks: number of alignments that this one is the best of.
     :param is_refused: whether nothing was aligned.
@@ -130,6 +131,11 @@ class Alignment:
     def fit(self) -> float:
         """Return the likelihood, reduced for points outside the map; for comparing places."""
         return self.nearest_voxel_likelihood * self.share_in_map
+
+    def continued_from(self, start: Alignment) -> Alignment:
+        """Return this alignment with the steps of the one whose result it began at."""
+        path = np.concatenate([start.path, self.path[1:]])
+        return replace(self, iterations=start.iterations + self.iterations, path=path)
 
     @classmethod
     def refused(cls, guess: Pose | None, why: str, options: MatcherOptions) -> Alignment:

@@ -251,7 +251,7 @@ class Matcher:
         start = self._aligned(replace(asked, scan=seen), is_close=True, polish=False)
         if not start.is_degenerate:
             there = replace(asked, guess=start.T_map_sensor)
-            yield self._aligned(there, is_close=True)
+            yield self._aligned(there, is_close=True).continued_from(start)
         yield self._aligned(asked, is_close=True)
 
     def _looked_again(self, first: Alignment, asked: Question, convinces: Convinces) -> Alignment:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -86,3 +88,14 @@ def test_where_what_no_vehicle_has_misleads_the_guess_itself_leads_home():
     found = matcher.align(scan, guess)
     assert found.T_map_sensor.tolist() == home.T_map_sensor.tolist()
     assert found.looks == 8  # the first, five of the second look, two closer
+
+
+def test_the_steps_of_a_closer_look_begin_at_the_guess():
+    drive = trust_variants.with_vehicles(simulated()["street 1"]())
+    matcher = SerialMatcher(replace(OPTIONS, polish_levels=()))
+    matcher.set_map(VoxelMap.from_points(drive.map_points, matcher.options))
+    guess = drive.poses[30] @ poses.from_xyz_rpy((1.0, 0.0, 0.0))
+    for found in matcher.closer_looks(scan_points(drive.scan(30)), guess):
+        np.testing.assert_allclose(found.path[0], guess, atol=1e-6)
+        np.testing.assert_array_equal(found.path[-1], found.T_map_sensor)
+        assert len(found.path) == 1 + found.iterations
