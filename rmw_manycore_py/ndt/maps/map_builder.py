@@ -19,6 +19,7 @@ from rmw_manycore_py.errors import what_is_wrong
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.maps import map_process
 from rmw_manycore_py.ndt.maps.map_process import HeldMap, Source
+from rmw_manycore_py.ndt.maps.map_sample import MapSample
 from rmw_manycore_py.ndt.maps.map_tiles import TileFiles
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
@@ -97,13 +98,27 @@ class MapBuilder:
         return built
 
     def sample(self, files: TileFiles, max_count: int) -> Future[Points]:
-        """Have the process read at most `max_count` points (N, 3) of tiles."""
-        return self._executor.submit(self._helper.call, map_process.sample_of, files, max_count)
+        """Have the process read at most `max_count` points (N, 3) of tiles, spread over them.
+
+        A map that is to be built meanwhile waits for one tile at most.
+        """
+        sample = MapSample(files, max_count)
+        self._executor.submit(self._sample_tile, sample)
+        return sample.points
 
     def close(self) -> None:
         """Stop the process and the thread."""
         self._helper.close()
         self._executor.shutdown(wait=True, cancel_futures=True)
+
+    def _sample_tile(self, sample: MapSample) -> None:
+        """Have a tile read; the next one is behind a map that waits."""
+        try:
+            sample.read_tile(self._helper)
+            if not sample.points.done():
+                self._executor.submit(self._sample_tile, sample)
+        except Exception as error:  # such as a tile that is gone, or the end of this builder
+            sample.points.set_exception(error)
 
     def _start(self, read: Read) -> Future[BuiltMap]:
         running = self._executor.submit(self._build, read)

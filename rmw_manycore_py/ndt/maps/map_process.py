@@ -54,10 +54,17 @@ def built(
     return voxel_map, HeldMap(*where, returned, why_coarse(points))
 
 
-def sample_of(files: TileFiles, max_count: int) -> Points:
-    """Return points (N, 3) of tiles, spread evenly; keeps none that the maps do not."""
-    points = files.read(dict(_tiles))
-    return points[spread_indices(len(points), max_count)]
+def sample_of(tile: TileFiles, seen: int, max_count: int) -> tuple[Points, int]:
+    """Return a tile's share (N, 3) of `max_count` points, and `seen` with the tile's points.
+
+    Keeps none that the maps do not.
+
+    :param seen: number of points of the tiles before, of all of which the sample is.
+    """
+    points = tile.read(dict(_tiles))
+    seen += len(points)
+    share = len(points) * max_count // max(seen, max_count)
+    return points[spread_indices(len(points), share)], seen
 
 
 def let_go(shared_paths: list[str]) -> None:

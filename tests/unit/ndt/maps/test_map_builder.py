@@ -6,12 +6,14 @@ from __future__ import annotations
 import os
 import signal
 import threading
+from concurrent.futures import Future
 
 import numpy as np
 import pytest
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
+from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.maps import map_process
 from rmw_manycore_py.ndt.maps.map_builder import MapBuilder
 from rmw_manycore_py.ndt.maps.map_tiles import TileFiles, open_map, write_tiles
@@ -71,6 +73,48 @@ def test_tiles_are_read_where_the_map_is_built(tmp_path, with_points):
     assert take(builder).voxel_map.voxels == here.voxel_map.voxels
     builder.submit(lambda: TileFiles((tmp_path / "gone.npz",), 0.0))
     assert "there is no such file" in take(builder).problem
+    builder.close()
+
+
+def test_a_map_waits_for_one_tile_of_a_sample_at_most(tmp_path):
+    points = np.random.default_rng(1).uniform(0, 40, (20000, 3)).astype("f4")
+    points[:, 0] **= 2  # so tiles differ
+    write_tiles(tmp_path, points, 100.0, ".npz")
+    files = open_map(tmp_path).files_around(0.0, 0.0, 2000.0)
+    built = Taking()
+    was_read = []
+    sample: Future[Points] = Future()
+
+    def on_built() -> None:
+        was_read.append(sample.done())
+        built.built.release()
+
+    builder = MapBuilder(MatcherOptions(), on_built)
+    for _ in range(2):  # the second starts the process
+        builder.submit(lambda: points)
+        assert built(builder).voxel_map is not None
+    helper = builder._helper.pid
+    assert helper is not None
+    os.kill(helper, signal.SIGSTOP)
+    sample = builder.sample(files, 1600)
+    builder.submit(lambda: points)
+    os.kill(helper, signal.SIGCONT)
+    assert built(builder).voxel_map is not None
+    assert was_read[2] is False
+    read = sample.result(timeout=60.0)
+    assert len(read) == 1600
+    counts, expected = (np.bincount((one[:, 0] // 100.0).astype(int)) for one in (read, points))
+    np.testing.assert_allclose(counts, 0.08 * expected, atol=len(files.paths))
+    assert len(builder.sample(files, len(points)).result(timeout=60.0)) == len(points)
+    builder.close()
+
+
+def test_a_sample_of_no_tiles_or_of_one_that_is_gone(tmp_path):
+    builder = MapBuilder(MatcherOptions())
+    assert builder.sample(TileFiles((), 0.0), 10).result(timeout=60.0).shape == (0, 3)
+    gone = builder.sample(TileFiles((tmp_path / "gone.npz",), 0.0), 10)
+    with pytest.raises(ManycoreError, match="there is no such file"):
+        gone.result(timeout=60.0)
     builder.close()
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A sample of the tiles is small, and leaves nothing in the process that builds maps."""
+"""A sample of a tile is small, and leaves nothing in the process that builds maps."""
 
 from __future__ import annotations
 
@@ -23,10 +23,14 @@ DATA ascii
 """
 
 
-def test_a_sample_is_spread_over_all_tiles_and_none_is_kept(tmp_path):
-    tiles = tuple(tmp_path / f"{name}.pcd" for name in "ab")
-    for number, tile in enumerate(tiles):
-        tile.write_text(HEAD + f"{number} 0 0\n" * 500)
-    sample = map_process.sample_of(TileFiles(tiles, leaf_m=0.0), 10)
-    assert sample[:, 0].tolist() == [0.0] * 5 + [1.0] * 5
+def test_a_tile_gives_its_share_and_is_not_kept(tmp_path, monkeypatch):
+    monkeypatch.setattr(map_process, "_tiles", {})
+    path = tmp_path / "a.pcd"
+    path.write_text(HEAD + "".join(f"{number} 0 0\n" for number in range(500)))
+    tile = TileFiles((path,), leaf_m=0.0)
+    whole, seen = map_process.sample_of(tile, 0, 500)
+    assert (len(whole), seen) == (500, 500)
+    sample, seen = map_process.sample_of(tile, 1500, 40)
+    assert (sample[:, 0] // 50).tolist() == list(range(10))
+    assert seen == 2000
     assert map_process._tiles == {}
