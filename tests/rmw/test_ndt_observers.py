@@ -30,17 +30,21 @@ pytestmark = pytest.mark.rmw
 LEFT_BYTES = 32 * 1024  # less than a cloud
 
 
+def leave_little_room(platform: str) -> None:
+    """Charge all of cluster 1's SMEM but less than a cloud."""
+    now = own_cluster()
+    reserve = min(now.smem_bytes // 8, 8 << 20)  # only control blocks are allocated there
+    _transport.charge_smem(platform, now.smem_bytes - now.used_bytes - reserve - LEFT_BYTES)
+
+
 @pytest.mark.skipif(not IS_MANYCORE, reason="the SMEM of a cluster is rmw_manycore's")
 def test_clouds_without_room_are_missing_but_not_the_poses(stack, start):
     program = start(matcher_command(), cluster=1)
     stack.wait_for_matcher()
     stack.publish_map(street_map())
     stack.pose_of(street_scan(), NEAR)
-    now = own_cluster()
-    reserve = min(now.smem_bytes // 8, 8 << 20)  # only control blocks are allocated there
-    free = now.smem_bytes - now.used_bytes - reserve
     platform = os.environ["MANYCORE_PLATFORM"]
-    _transport.charge_smem(platform, free - LEFT_BYTES)
+    leave_little_room(platform)
 
     clouds = []
     stack.node.create_subscription(PointCloud2, "points_aligned", clouds.append, 10)
@@ -74,3 +78,19 @@ def test_an_observer_sees_the_tiles_of_the_map(stack, start, tmp_path):
     expected = tiles.around(*there[:2, 3], 60.0)[1]
     spin_until(stack.node, lambda: stack.send(street_scan(), there) and len(maps) > 1)
     np.testing.assert_array_equal(decode(maps[1]), expected)
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="the SMEM of a cluster is rmw_manycore's")
+def test_a_map_without_room_is_published_once_there_is_room(stack, start, tmp_path):
+    write_tiles(tmp_path / "tiles", street_map(), 20.0, ".npz")
+    program = start(matcher_command(map_path=tmp_path / "tiles"), cluster=1)
+    stack.wait_for_matcher()
+    stack.pose_of(street_scan(), NEAR)
+    platform = os.environ["MANYCORE_PLATFORM"]
+    leave_little_room(platform)
+    maps = []
+    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    stack.node.create_subscription(PointCloud2, "debug/loaded_pointcloud_map", maps.append, kept)
+    program.wait_for("debug/loaded_pointcloud_map is not published: .* has no room for")
+    _transport.charge_smem(platform, 0)
+    spin_until(stack.node, lambda: maps)

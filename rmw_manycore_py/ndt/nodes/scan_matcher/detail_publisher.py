@@ -27,11 +27,13 @@ class DetailPublisher:
         """Return whether there are subscriptions."""
         return bool(self._publisher.get_subscription_count() > 0)
 
-    def publish(self, message: Any) -> None:
-        """Publish a message, for example too large for what is left of the cluster's SMEM."""
+    def publish(self, message: Any) -> bool:
+        """Publish a message; return whether what is left of the cluster's SMEM had room for it."""
         try:
             self._publisher.publish(message)
         except RCLError as error:
             if not self._node.context.ok():
                 raise
             self._log(f"{self._name} is not published: {reported(error)}")
+            return False
+        return True

@@ -15,16 +15,19 @@ from rmw_manycore_py.ndt.maps.map_tiles import TileFiles
 from rmw_manycore_py.ndt.messages.point_cloud import encode
 from rmw_manycore_py.ndt.nodes.scan_matcher.detail_publisher import DetailPublisher
 from rmw_manycore_py.ndt.nodes.scan_matcher.map_supply import MapSupply
+from rmw_manycore_py.process.steady import steady_s
 
 TOPIC = "debug/loaded_pointcloud_map"
 MAX_SAMPLE = 100_000  # points: enough to draw, and little beside a map
+RETRY_S = 3.0
 
 
 class LoadedMap:
     """Publishes points of the loaded map, transient local.
 
     With the parameter `publish_loaded_map` all of each map, as the node takes it. Without, a sample
-    of the loaded tiles once there is a subscription, and again after other tiles were loaded.
+    of the loaded tiles once there is a subscription, and again after other tiles were loaded. A
+    sample that could not be published, or read, is read again some seconds later.
     """
 
     def __init__(self, node: Node, map_frame: str, supply: MapSupply) -> None:
@@ -34,31 +37,34 @@ class LoadedMap:
         self._map_frame = map_frame
         self._supply = supply
         self._sampled: TileFiles | None = None
-        self._reading: Future[Points] | None = None
+        self._reading: tuple[TileFiles, Future[Points]] | None = None
+        self._retry_s = 0.0
 
-    def publish(self, points: Points) -> None:
-        """Publish points (N, 3)."""
+    def publish(self, points: Points) -> bool:
+        """Publish points (N, 3); return whether there was room for them."""
         stamp = self._node.get_clock().now().to_msg()
-        self._publisher.publish(encode(points, stamp, self._map_frame))
+        return self._publisher.publish(encode(points, stamp, self._map_frame))
 
     def look(self) -> None:
         """Publish a sample that has been read, or have one read if it is wanted."""
         if self._reading is not None:
-            self._publish_read(self._reading)
+            self._publish_read(*self._reading)
         files = self._supply.loaded_files
         if self._reading is not None or files is None or files == self._sampled:
             return
-        if self._publisher.is_wanted:
-            self._sampled = files
-            self._reading = self._supply.sample(files, MAX_SAMPLE)
+        if self._publisher.is_wanted and steady_s() > self._retry_s:
+            self._reading = files, self._supply.sample(files, MAX_SAMPLE)
 
-    def _publish_read(self, reading: Future[Points]) -> None:
+    def _publish_read(self, files: TileFiles, reading: Future[Points]) -> None:
         if not reading.done():
             return
         self._reading = None
+        points = None
         try:
             points = reading.result()
         except Exception as error:  # such as a tile that is gone
             self._node.get_logger().warning(f"{TOPIC} is not published: {what_is_wrong(error)}")
+        if points is not None and self.publish(points):
+            self._sampled = files
         else:
-            self.publish(points)
+            self._retry_s = steady_s() + RETRY_S
