@@ -206,3 +206,39 @@ def test_a_tile_that_is_damaged_while_driving(stack, start, tmp_path, damage):
         ),
     )
     assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+
+
+def test_a_standing_vehicle_gets_its_map_once_all_tiles_are_there(stack, start, tmp_path):
+    """Its first map, and the next one, whose tiles another process reads."""
+    folder, away = tmp_path / "tiles", tmp_path / "away"
+    beside = street_map() + np.float32([200.0, 0.0, 0.0])
+    write_tiles(folder, np.concatenate([street_map(), beside]), 20.0, ".npz")
+    more = {
+        "dynamic_map_loading__map_radius": 60.0,
+        "dynamic_map_loading__lidar_radius": 5.0,
+        "dynamic_map_loading__publish_loaded_map": "true",
+    }
+    maps = []
+    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    stack.node.create_subscription(PointCloud2, "debug/loaded_pointcloud_map", maps.append, kept)
+    start(matcher_command(map_path=folder, **more), cluster=2)
+    stack.wait_for_matcher()
+    for count, (name, x) in enumerate([("0_0.npz", 0.0), ("10_0.npz", 200.0)]):
+        there = from_xyz_rpy((x, 0.0, 0.0)) @ NEAR
+        (folder / name).rename(away)
+        stack.reports.clear()
+        spin_until(
+            stack.node,
+            lambda there=there: (
+                stack.report_of(stack.send(street_scan(), there))
+                and any("there is no such file" in status.message for _, status in stack.reports)
+            ),
+        )
+        assert len(maps) == count
+        away.rename(folder / name)
+        spin_until(
+            stack.node,
+            lambda there=there, count=count: (
+                stack.report_of(stack.send(street_scan(), there)) and len(maps) > count
+            ),
+        )

@@ -93,6 +93,7 @@ class PointcloudMapLoader(Node):
             return
         if points is not None:
             self._publish(points)
+            self._area.accept(self._area.asked)
 
     def _publish(self, points: Points) -> None:
         if warning := why_coarse(points):

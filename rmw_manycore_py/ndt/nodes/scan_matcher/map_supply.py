@@ -84,7 +84,7 @@ class MapSupply:
         area = self._area
         if area is None or not self._builder.is_idle:
             return
-        if area.distance_m(x, y) > self._p.update_distance_m:
+        if area.is_due(x, y):
             # Other tiles than the first are read by the process that builds of them.
             update = area.update_files if self.is_set else area.update
             self._builder.submit(partial(update, x, y))
@@ -115,6 +115,8 @@ class MapSupply:
 
     def take(self) -> tuple[VoxelMap, Points | None] | None:
         """Return a map built since the last call, and its points if they are to be published."""
+        # Before the builder is idle: the next update may be another thread's.
+        asked = self._area.asked if self._area is not None else None
         built = self._builder.take()
         if built is None:
             return None
@@ -126,6 +128,8 @@ class MapSupply:
         except ManycoreError as error:
             self._refuse(str(error))
             return None
+        if self._area is not None:
+            self._area.accept(asked)
         self._problem = ""
         self.is_set = True
         self._warning = built.warning
@@ -134,8 +138,9 @@ class MapSupply:
 
     @property
     def loaded_files(self) -> TileFiles | None:
-        """Files of the map around the vehicle; None if it comes from elsewhere, or is not set."""
-        return self._area.files if self._area is not None and self.is_set else None
+        """Files of the map in use; None if it comes from elsewhere, or is not set."""
+        loaded = self._area.loaded if self._area is not None else None
+        return loaded.files if loaded is not None else None
 
     def sample(self, files: TileFiles, max_count: int) -> Future[Points]:
         """Have at most `max_count` points (N, 3) of files read in the background."""
@@ -147,7 +152,7 @@ class MapSupply:
             return
         self._problem = problem
         if self._area is not None:
-            self._area.forget_tiles()
+            self._area.refuse()
         if self._loader is not None:
             self._loader.forget_cells()
 
