@@ -54,6 +54,11 @@ def is_message(value: Any) -> bool:
     return hasattr(value, "get_fields_and_field_types")
 
 
+def shortened(text: str, length: int) -> str:
+    """Return a text, cut to this many characters."""
+    return text if len(text) <= length else text[:length] + ELLIPSIS
+
+
 class _LinePerField(yaml.SafeDumper):
     """Writes only arrays in flow style, as `ros2 topic echo --flow-style` does."""
 
@@ -124,9 +129,7 @@ def _full(type_name: str) -> str:
 def _string(text: str, shown: Shown) -> str:
     if not shown.strings:
         return f"<string length: <{len(text)}>>"
-    if shown.length is None or len(text) <= shown.length:
-        return text
-    return text[: shown.length] + ELLIPSIS
+    return text if shown.length is None else shortened(text, shown.length)
 
 
 def _list(values: Sequence[Any], shown: Shown) -> list[Any]:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.message_text import shortened
 from rmw_manycore_py.cli.topic.listening import Listener, offered_policies
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.native._transport import EndpointInfo
@@ -22,6 +23,7 @@ _CLOUD = "sensor_msgs/msg/PointCloud2"
 _DIAGNOSTICS = ("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
 MAX_POINTS = 20_000
 MAX_MAP_POINTS = 100_000
+MAX_TEXT = 300  # characters of a text from a message; the viewer reads lines of limited length
 _ALL_REPORTS = QosOptions(depth=100)  # also of the time that a large cloud takes
 _LOOK_PERIOD_S = 1.0
 _STATUS = "scan_matching_status"  # of Autoware's matcher and ours
@@ -50,13 +52,13 @@ def cloud_of(message: Any, max_count: int = MAX_POINTS) -> Row:
     from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode
 
     count = message.width * message.height
-    row: Row = {"frame": message.header.frame_id, "count": count}
+    row: Row = {"frame": shortened(message.header.frame_id, MAX_TEXT), "count": count}
     if count == 0:
         return {**row, "problem": "the cloud is empty"}
     try:
         points = decode(message, max_count)
     except CloudError as error:
-        return {**row, "problem": str(error)}
+        return {**row, "problem": shortened(str(error), MAX_TEXT)}
     if len(points) == 0:
         return {**row, "problem": f"none of {count} points has a finite position"}
     points = points[np.argsort(points[:, 2])].astype(np.float64)
@@ -73,11 +75,12 @@ def cloud_of(message: Any, max_count: int = MAX_POINTS) -> Row:
 def judgement_of(status: Any) -> Row:
     """Return what a matcher says of its newest scan, and whether it believes the pose."""
     values = {pair.key: pair.value for pair in status.values}
+    message = shortened(status.message, MAX_TEXT)
     if "skipping_publish_num" not in values:  # not matched, since a newer scan has arrived
-        return {"text": status.message, "believed": False}
+        return {"text": message, "believed": False}
     if values["skipping_publish_num"] != "0" or values.get("is_activated") != "True":
-        return {"text": f"refused: {status.message}", "believed": False}
-    remark = "" if status.message in ("", "OK") else f", but {status.message}"
+        return {"text": f"refused: {message}", "believed": False}
+    remark = "" if message in ("", "OK") else f", but {message}"
     return {"text": f"believed{remark}", "believed": True}
 
 

@@ -14,6 +14,7 @@ from sensor_msgs.msg import Image, PointCloud2, PointField
 
 from rmw_manycore_py.cli.topic.cloud_samples import (
     MAX_POINTS,
+    MAX_TEXT,
     cloud_of,
     is_cloud,
     judgement_of,
@@ -117,3 +118,20 @@ def test_a_judgement_says_whether_and_why(
     pairs = [KeyValue(key=key, value=str(value)) for key, value in values.items()]
     found = judgement_of(DiagnosticStatus(message=message, values=pairs))
     assert found == {"text": text, "believed": believed}
+
+
+def test_long_texts_are_cut() -> None:
+    far = cloud([[1, 2, 3]])
+    far.header.frame_id = "f" * (8 << 20)
+    assert cloud_of(far)["frame"] == "f" * MAX_TEXT + "..."
+    flat = cloud([[1, 2, 3]])
+    flat.fields = [PointField(name="n" * (8 << 20), datatype=PointField.FLOAT32, count=1)]
+    problem = cloud_of(flat)["problem"]
+    assert problem.startswith("the cloud has no field 'x'; its fields: nnn")
+    assert len(problem) == MAX_TEXT + len("...")
+    active = [("is_activated", "True"), ("skipping_publish_num", "0")]
+    for pairs in ([], active[1:], active):
+        values = [KeyValue(key=key, value=value) for key, value in pairs]
+        status = DiagnosticStatus(message="m" * (8 << 20), values=values)
+        assert judgement_of(status)["text"].endswith("mm...")
+        assert len(judgement_of(status)["text"]) < 2 * MAX_TEXT
