@@ -57,7 +57,7 @@ class Listener:
         self._clock: Any = None
         self._published_s: float | None = None  # the newest message, in a run in virtual time
         if not waits:
-            self._message_type()
+            self.message_type()
 
     def every(self, period_s: float, call: Callable[[], None]) -> None:
         """Call a function once per period."""
@@ -66,6 +66,13 @@ class Listener:
     def stop(self) -> None:
         """End `run` after the current message."""
         self._over = True
+
+    def message_type(self) -> Any:
+        """Return the class of the messages; raise ManycoreError if it cannot be known."""
+        if self._type_name:
+            return load_type(self._type_name)
+        endpoints = _endpoints(self._platform, self._topic)
+        return load_type(type_of_topic(self._topic, endpoints, _topics(self._platform)))
 
     def now_s(self) -> float:
         """Return the time used for measuring in seconds: simulated, virtual, or since 1970."""
@@ -113,7 +120,7 @@ class Listener:
         reliable, kept = offered_policies(endpoints)
         is_virtual = not self._sim_time and virtual_clock(self._platform) is not None
         node.create_subscription(
-            self._message_type(),
+            self.message_type(),
             self._topic,
             self._noting_time if is_virtual else self._heard,
             self._qos.profile(reliable=reliable, kept=kept),
@@ -126,12 +133,6 @@ class Listener:
         self._published_s = info["source_timestamp"] * 1e-9
         takes_info = len(signature(self._heard).parameters) > 1
         self._heard(*((message, info) if takes_info else (message,)))
-
-    def _message_type(self) -> Any:
-        if self._type_name:
-            return load_type(self._type_name)
-        endpoints = _endpoints(self._platform, self._topic)
-        return load_type(type_of_topic(self._topic, endpoints, _topics(self._platform)))
 
 
 def type_of_topic(topic: str, endpoints: Iterable[EndpointInfo], known: Iterable[str] = ()) -> str:

@@ -15,10 +15,12 @@ from typing import Any
 
 import numpy as np
 
+from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.message_text import Shown, to_plain
-from rmw_manycore_py.cli.topic.cloud_samples import Surroundings, cloud_of, is_cloud
+from rmw_manycore_py.cli.topic.cloud_samples import cloud_of, is_cloud
 from rmw_manycore_py.cli.topic.listening import Listener
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
+from rmw_manycore_py.cli.topic.surroundings import Surroundings
 from rmw_manycore_py.errors import ManycoreError
 
 _PERIOD_S = 0.2
@@ -43,6 +45,7 @@ def main() -> None:
     """Print messages until interrupted; errors go to standard error."""
     platform, topic = sys.argv[1:]
     newest: Any = None  # that is not shown yet
+    surroundings: Surroundings | None = None  # of clouds
 
     def heard(message: Any) -> None:
         nonlocal newest
@@ -54,7 +57,7 @@ def main() -> None:
         if message is None:
             return
         row = {"time_s": time.time(), "fields": _finite(to_plain(message, _SHOWN))}
-        if is_cloud(message):
+        if surroundings is not None:
             _show({**row, "cloud": cloud_of(message)})
             surroundings.belong_to(message.header.frame_id)
         else:
@@ -63,8 +66,10 @@ def main() -> None:
     try:
         listener = Listener(platform, topic, None, heard, qos=QosOptions(depth=1))
         listener.every(_PERIOD_S, show_newest)
-        surroundings = Surroundings(listener, platform, topic, _show)
-        listener.run()
+        with view.open_platform(platform) as opened:
+            if is_cloud(listener.message_type()):
+                surroundings = Surroundings(listener, opened, topic, _show)
+            listener.run()
     except ManycoreError as error:
         sys.exit(f"manycore: {error}")
 

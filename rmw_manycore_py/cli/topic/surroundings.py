@@ -1,0 +1,97 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What the page of `manycore view` shows with the clouds of a topic: a map and a judgement."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from rmw_manycore_py.cli.topic.cloud_samples import MAX_MAP_POINTS, Row, cloud_of, judgement_of
+from rmw_manycore_py.cli.topic.listening import Listener, offered_policies
+from rmw_manycore_py.cli.topic.qos_options import QosOptions
+from rmw_manycore_py.native._transport import EndpointInfo, Platform
+from rmw_manycore_py.ros.names import expand, full_node_name
+
+_CLOUD = "sensor_msgs/msg/PointCloud2"
+_DIAGNOSTICS = ("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
+_ALL_REPORTS = QosOptions(depth=100)  # also of the time that a large cloud takes
+LOOK_PERIOD_S = 0.5
+_STATUS = "scan_matching_status"  # of Autoware's matcher and ours
+
+
+class Surroundings:
+    """Subscribes to what is shown with the clouds of a topic: a latched map, a matcher's report.
+
+    Reads the registry only after nodes or endpoints have come or gone.
+    """
+
+    def __init__(
+        self, listener: Listener, platform: Platform, topic: str, show: Callable[[Row], None]
+    ) -> None:
+        self._listener, self._platform = listener, platform
+        self._topic, self._show = expand(topic, "/"), show
+        self._generation: int | None = None  # of the graph that was read
+        self._map_topics: list[str] = []
+        self._frame: str | None = None  # of the clouds; none yet
+        self._has_map = self._has_reports = False
+        self._asked: set[str] = set()  # topics of maps
+        self._names: set[str] = set()  # of nodes that report
+        listener.every(LOOK_PERIOD_S, self._look)
+
+    def belong_to(self, frame: str) -> None:
+        """Look for a map in the frame of the clouds from now on."""
+        self._frame = frame
+
+    def _look(self) -> None:
+        generation = self._platform.graph_generation()
+        if generation != self._generation:
+            self._generation = generation
+            self._read_graph()
+        if self._frame is not None and not self._has_map:
+            self._ask_for_map()
+
+    def _read_graph(self) -> None:
+        endpoints = self._platform.endpoints()
+        publishers = [e for e in endpoints if (e.kind, e.role) == ("publisher", "topic")]
+        own = {_node(e) for e in publishers if e.topic == self._topic}
+        self._map_topics = _latched_clouds(publishers, self._topic, own)
+        reporting = {_node(e) for e in publishers if (e.topic, e.type) == _DIAGNOSTICS} & own
+        self._names = {name.rpartition("/")[2] for name in reporting}
+        if reporting and not self._has_reports:
+            self._has_reports = True
+            self._listener.also(*_DIAGNOSTICS, self._on_report, _ALL_REPORTS)
+
+    def _ask_for_map(self) -> None:
+        for topic in self._map_topics:
+            if topic not in self._asked:
+                self._asked.add(topic)
+                on_map = partial(self._on_map, topic)
+                self._listener.also(topic, _CLOUD, on_map, QosOptions(depth=1))
+                return
+
+    def _on_map(self, topic: str, message: Any) -> None:
+        if message.header.frame_id != self._frame:
+            return
+        row = cloud_of(message, MAX_MAP_POINTS)
+        if "points" in row:
+            self._has_map = True
+            self._show({"map": {"topic": topic, **row}})
+
+    def _on_report(self, message: Any) -> None:
+        for status in message.status:
+            name, _, kind = status.name.partition(": ")
+            if kind == _STATUS and name in self._names:
+                self._show({"judgement": judgement_of(status)})
+
+
+def _latched_clouds(publishers: list[EndpointInfo], topic: str, nodes: set[str]) -> list[str]:
+    """Return the topics of other latched clouds, those of these nodes last."""
+    others = [e for e in publishers if e.type == _CLOUD and e.topic != topic]
+    topics = {(_node(other) in nodes, other.topic) for other in others}
+    names = dict.fromkeys(name for _, name in sorted(topics))
+    return [name for name in names if offered_policies(o for o in others if o.topic == name)[1]]
+
+
+def _node(endpoint: EndpointInfo) -> str:
+    return full_node_name(endpoint.node_namespace, endpoint.node_name)
