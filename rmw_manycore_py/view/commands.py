@@ -17,7 +17,7 @@ from rmw_manycore_program import own_program
 from rmw_manycore_py.errors import ManycoreError
 
 _TIMEOUT_S = 20.0
-_MAX_LINE_BYTES = 4 << 20
+MAX_LINE_BYTES = 4 << 20
 
 
 async def output_of(*words: str) -> str:
@@ -57,7 +57,7 @@ async def _started(module: str, *words: str) -> AsyncIterator[Process]:
         stdout=PIPE,
         stderr=PIPE,
         env=dict(os.environ),
-        limit=_MAX_LINE_BYTES,
+        limit=MAX_LINE_BYTES,
     )
     try:
         yield process

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -15,12 +17,15 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
 
 from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.topic.cloud_samples import MAX_MAP_POINTS
 from rmw_manycore_py.cli.topic.listening import Listener
 from rmw_manycore_py.cli.topic.surroundings import LOOK_PERIOD_S, Surroundings
 from rmw_manycore_py.native._transport import EndpointInfo, Platform
 from rmw_manycore_py.ndt.messages.point_cloud import encode
-from support import IS_MANYCORE
+from rmw_manycore_py.view.commands import MAX_LINE_BYTES
+from support import IS_MANYCORE, wait_until
 from support.nodes.ros import peer_node, spin
+from support.peers.programs import forked_node
 
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore")
 
@@ -36,6 +41,39 @@ def publish_latched(node: Node, topic: str, message: PointCloud2) -> Any:
     publisher = node.create_publisher(PointCloud2, topic, LATCHED)
     publisher.publish(message)
     return publisher
+
+
+class Samples:
+    """Publishes /scan on a node, and reads what the page receives of it."""
+
+    def __init__(self, node: Node, start: Callable[..., Any]) -> None:
+        self._node = node
+        self._scans = node.create_publisher(PointCloud2, "/scan", 1)
+        arguments = (os.environ["MANYCORE_PLATFORM"], "/scan")
+        self._program = start(forked_node("rmw_manycore_py.cli.topic.samples", *arguments))
+        wait_until(lambda: node.count_subscribers("/scan") == 1, "/scan is subscribed")
+
+    def rows(self, kind: str) -> list[Any]:
+        lines = [json.loads(line) for line in self._program.lines if line.startswith("{")]
+        return [line[kind] for line in lines if kind in line]
+
+    def scan(self, frame: str) -> None:
+        """Publish a scan, and wait until it is shown."""
+        count = len(self.rows("cloud"))
+        self._scans.publish(cloud(frame))
+        wait_until(lambda: len(self.rows("cloud")) > count, f"the scan in '{frame}' is shown")
+
+    def scan_for(self, duration_s: float) -> None:
+        """Scan until the samples are this much younger, by the program's own time."""
+        self.scan("map")
+        end_s = self.rows("time_s")[-1] + duration_s
+        while self.rows("time_s")[-1] < end_s:
+            self.scan("map")
+
+
+@pytest.fixture
+def samples(node: Node, start: Callable[..., Any]) -> Samples:
+    return Samples(node, start)
 
 
 class ReadPlatform:
@@ -82,3 +120,78 @@ def test_the_graph_is_read_only_after_it_has_changed(start_peer: Callable[..., A
         listener.run()
     assert shown[0]["map"]["topic"] == "/city"
     assert read.read_count == len(set(read.generations))
+
+
+def test_a_change_of_frame_brings_the_map_of_the_new_one(node: Node, samples: Samples) -> None:
+    yard, city = (publish_latched(node, f"/{name}", cloud(name)) for name in ("yard", "city"))
+    for count, (frame, other) in enumerate((("city", yard), ("yard", city), ("city", yard)), 1):
+        samples.scan(frame)
+        wait_until(lambda count=count: len(samples.rows("map")) >= count, f"map of '{frame}'")
+        assert samples.rows("map")[-1]["topic"] == f"/{frame}"
+        wait_until(lambda other=other: other.get_subscription_count() == 0, "the other is not kept")
+    assert len(samples.rows("map")) == 3
+
+
+def test_a_map_in_another_frame_is_looked_for_again_after_its_restart(
+    node: Node, samples: Samples
+) -> None:
+    city = publish_latched(node, "/city", cloud("odom"))
+    samples.scan("map")
+    wait_until(lambda: city.get_subscription_count() == 1, "/city is subscribed")
+    wait_until(lambda: city.get_subscription_count() == 0, "/city is in another frame")
+    node.destroy_publisher(city)
+    samples.scan_for(4 * LOOK_PERIOD_S)
+    publish_latched(node, "/city", cloud("map"))
+    wait_until(lambda: samples.rows("map"), "the new map is shown")
+
+
+def test_an_equal_map_is_sent_once(node: Node, samples: Samples) -> None:
+    city = publish_latched(node, "/city", cloud("map"))
+    samples.scan("map")
+    wait_until(lambda: samples.rows("map"), "the map is shown")
+    for second in range(1, 4):
+        same = cloud("map")
+        same.header.stamp.sec = second
+        city.publish(same)
+        samples.scan_for(2 * LOOK_PERIOD_S)
+    city.publish(cloud("map", [[0, 0, 5]]))
+    wait_until(lambda: samples.rows("map")[-1]["origin"][2] == 5, "another map is shown")
+    assert len(samples.rows("map")) == 2
+
+
+def test_a_map_is_sent_at_most_once_per_look(node: Node, samples: Samples) -> None:
+    city = publish_latched(node, "/city", cloud("map"))
+    samples.scan("map")
+    wait_until(lambda: samples.rows("map"), "the map is shown")
+    begin_s, height = time.monotonic(), 0
+
+    def has_newer_maps() -> bool:
+        nonlocal height
+        height += 1
+        city.publish(cloud("map", [[0, 0, height]]))
+        return len(samples.rows("map")) >= 5
+
+    wait_until(has_newer_maps, "newer maps are shown")
+    # A timer of rclpy that is late calls once for all missed periods.
+    assert len(samples.rows("map")) - 2 <= (time.monotonic() - begin_s) / LOOK_PERIOD_S
+
+
+def test_a_large_map_is_thinned(node: Node, samples: Samples) -> None:
+    points = np.random.default_rng(1).random((5 * MAX_MAP_POINTS, 3))
+    city = publish_latched(node, "/city", cloud("map", points))
+    samples.scan("map")
+    wait_until(lambda: samples.rows("map"), "the map is shown")
+    (row,) = samples.rows("map")
+    assert (row["count"], row["shown"]) == (5 * MAX_MAP_POINTS, MAX_MAP_POINTS)
+    assert len(json.dumps({"map": row})) < MAX_LINE_BYTES
+    assert city.get_subscription_count() == 1
+
+
+def test_an_empty_map_is_waited_for(node: Node, samples: Samples) -> None:
+    city = publish_latched(node, "/city", cloud("map", np.zeros((0, 3))))
+    samples.scan("map")
+    wait_until(lambda: city.get_subscription_count() == 1, "/city is subscribed")
+    samples.scan_for(2 * LOOK_PERIOD_S)
+    assert samples.rows("map") == []
+    city.publish(cloud("map"))
+    wait_until(lambda: samples.rows("map"), "the map is shown")

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from inspect import signature
 from typing import Any
 
@@ -96,11 +97,12 @@ class Listener:
 
     def also(
         self, topic: str, type_name: str, heard: Callable[[Any], None], qos: QosOptions
-    ) -> None:
-        """Subscribe to another topic, too; only while running."""
+    ) -> Callable[[], None]:
+        """Subscribe to another topic, too; only while running. Returns what cancels that."""
         reliable, kept = offered_policies(_endpoints(self._platform, topic))
         profile = qos.profile(reliable=reliable, kept=kept)
-        self._node.create_subscription(load_type(type_name), topic, heard, profile)
+        made = self._node.create_subscription(load_type(type_name), topic, heard, profile)
+        return partial(self._node.destroy_subscription, made)
 
     def _wait_for_topic(self, node: Any) -> None:
         endpoints = _endpoints(self._platform, self._topic)

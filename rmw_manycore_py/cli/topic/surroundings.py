@@ -4,16 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
-from rmw_manycore_py.cli.topic.cloud_samples import MAX_MAP_POINTS, Row, cloud_of, judgement_of
+from rmw_manycore_py.cli.topic.cloud_samples import Row, judgement_of
 from rmw_manycore_py.cli.topic.listening import Listener, offered_policies
+from rmw_manycore_py.cli.topic.map_search import CLOUD, MapSearch
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.native._transport import EndpointInfo, Platform
 from rmw_manycore_py.ros.names import expand, full_node_name
 
-_CLOUD = "sensor_msgs/msg/PointCloud2"
 _DIAGNOSTICS = ("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
 _ALL_REPORTS = QosOptions(depth=100)  # also of the time that a large cloud takes
 LOOK_PERIOD_S = 0.5
@@ -32,24 +31,21 @@ class Surroundings:
         self._listener, self._platform = listener, platform
         self._topic, self._show = expand(topic, "/"), show
         self._generation: int | None = None  # of the graph that was read
-        self._map_topics: list[str] = []
-        self._frame: str | None = None  # of the clouds; none yet
-        self._has_map = self._has_reports = False
-        self._asked: set[str] = set()  # topics of maps
+        self._map, self._map_topics = MapSearch(listener, show), list[str]()
+        self._has_reports = False
         self._names: set[str] = set()  # of nodes that report
         listener.every(LOOK_PERIOD_S, self._look)
 
     def belong_to(self, frame: str) -> None:
         """Look for a map in the frame of the clouds from now on."""
-        self._frame = frame
+        self._map.belong_to(frame)
 
     def _look(self) -> None:
         generation = self._platform.graph_generation()
         if generation != self._generation:
             self._generation = generation
             self._read_graph()
-        if self._frame is not None and not self._has_map:
-            self._ask_for_map()
+        self._map.look(self._map_topics)
 
     def _read_graph(self) -> None:
         endpoints = self._platform.endpoints()
@@ -62,22 +58,6 @@ class Surroundings:
             self._has_reports = True
             self._listener.also(*_DIAGNOSTICS, self._on_report, _ALL_REPORTS)
 
-    def _ask_for_map(self) -> None:
-        for topic in self._map_topics:
-            if topic not in self._asked:
-                self._asked.add(topic)
-                on_map = partial(self._on_map, topic)
-                self._listener.also(topic, _CLOUD, on_map, QosOptions(depth=1))
-                return
-
-    def _on_map(self, topic: str, message: Any) -> None:
-        if message.header.frame_id != self._frame:
-            return
-        row = cloud_of(message, MAX_MAP_POINTS)
-        if "points" in row:
-            self._has_map = True
-            self._show({"map": {"topic": topic, **row}})
-
     def _on_report(self, message: Any) -> None:
         for status in message.status:
             name, _, kind = status.name.partition(": ")
@@ -87,7 +67,7 @@ class Surroundings:
 
 def _latched_clouds(publishers: list[EndpointInfo], topic: str, nodes: set[str]) -> list[str]:
     """Return the topics of other latched clouds, those of these nodes last."""
-    others = [e for e in publishers if e.type == _CLOUD and e.topic != topic]
+    others = [e for e in publishers if e.type == CLOUD and e.topic != topic]
     topics = {(_node(other) in nodes, other.topic) for other in others}
     names = dict.fromkeys(name for _, name in sorted(topics))
     return [name for name in names if offered_policies(o for o in others if o.topic == name)[1]]
