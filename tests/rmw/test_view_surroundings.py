@@ -6,12 +6,14 @@ from __future__ import annotations
 import json
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 import pytest
+import rclpy
 from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
@@ -48,13 +50,19 @@ class Samples:
 
     def __init__(self, node: Node, start: Callable[..., Any]) -> None:
         self._node = node
+        self._skipped = 0
         self._scans = node.create_publisher(PointCloud2, "/scan", 1)
         arguments = (os.environ["MANYCORE_PLATFORM"], "/scan")
         self._program = start(forked_node("rmw_manycore_py.cli.topic.samples", *arguments))
         wait_until(lambda: node.count_subscribers("/scan") == 1, "/scan is subscribed")
 
+    def skip(self) -> None:
+        """Forget what was received so far."""
+        self._skipped = len(self._program.lines)
+
     def rows(self, kind: str) -> list[Any]:
-        lines = [json.loads(line) for line in self._program.lines if line.startswith("{")]
+        received = self._program.lines[self._skipped :]
+        lines = [json.loads(line) for line in received if line.startswith("{")]
         return [line[kind] for line in lines if kind in line]
 
     def scan(self, frame: str) -> None:
@@ -195,3 +203,68 @@ def test_an_empty_map_is_waited_for(node: Node, samples: Samples) -> None:
     assert samples.rows("map") == []
     city.publish(cloud("map"))
     wait_until(lambda: samples.rows("map"), "the map is shown")
+
+
+class Matcher:
+    """Publishes scans like a matcher, and its reports."""
+
+    def __init__(self, name: str, namespace: str, scans: str) -> None:
+        self._node = rclpy.create_node(name, namespace=namespace)
+        self._scans = self._node.create_publisher(PointCloud2, scans, 1)
+        self._reports = self._node.create_publisher(DiagnosticArray, "/diagnostics", 10)
+
+    def report(self, message: str) -> None:
+        values = {"is_activated": "True", "skipping_publish_num": "1"}
+        name = f"{self._node.get_name()}: scan_matching_status"
+        pairs = [KeyValue(key=key, value=value) for key, value in values.items()]
+        status = DiagnosticStatus(name=name, message=message, values=pairs)
+        self._reports.publish(DiagnosticArray(status=[status]))
+
+    def wait_for_judgement(self, samples: Samples, message: str, text: str) -> None:
+        """Report until the page is told this."""
+        samples.skip()
+
+        def is_told() -> bool:
+            self.report(message)
+            return text in [row["text"] for row in samples.rows("judgement")]
+
+        wait_until(is_told, text)
+
+    def end(self) -> None:
+        self._node.destroy_node()
+
+
+@pytest.fixture
+def matcher(samples: Samples) -> Iterator[Matcher]:
+    matcher = Matcher("ndt", "/a", "/scan")
+    yield matcher
+    matcher.end()
+
+
+def test_a_matcher_of_the_same_name_is_not_mistaken(matcher: Matcher, samples: Samples) -> None:
+    matcher.wait_for_judgement(samples, "the score is low", "refused: the score is low")
+    other = Matcher("ndt", "/b", "/b/scan")
+    unknown = "unknown: several nodes are named 'ndt'"
+    other.wait_for_judgement(samples, "the scan is empty", unknown)
+    assert "refused: the scan is empty" not in [row["text"] for row in samples.rows("judgement")]
+    matcher.wait_for_judgement(samples, "the map is empty", unknown)
+    assert {row["text"] for row in samples.rows("judgement")} == {unknown}
+    other.end()
+    matcher.wait_for_judgement(samples, "there is no map", "refused: there is no map")
+
+
+def test_other_matchers_are_not_asked(matcher: Matcher, samples: Samples) -> None:
+    other = Matcher("other_ndt", "/a", "/b/scan")
+    for _ in range(3):
+        other.report("the scan is empty")
+        matcher.wait_for_judgement(samples, "the score is low", "refused: the score is low")
+        assert {row["text"] for row in samples.rows("judgement")} == {"refused: the score is low"}
+    other.end()
+
+
+def test_a_matcher_that_restarts_is_judged_again(matcher: Matcher, samples: Samples) -> None:
+    matcher.wait_for_judgement(samples, "the score is low", "refused: the score is low")
+    matcher.end()
+    again = Matcher("ndt", "/a", "/scan")
+    again.wait_for_judgement(samples, "the scan is empty", "refused: the scan is empty")
+    again.end()

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
@@ -33,7 +34,8 @@ class Surroundings:
         self._generation: int | None = None  # of the graph that was read
         self._map, self._map_topics = MapSearch(listener, show), list[str]()
         self._has_reports = False
-        self._names: set[str] = set()  # of nodes that report
+        self._reporting: Counter[str] = Counter()  # nodes by name without namespace
+        self._own_names: set[str] = set()  # of nodes that report and publish the clouds
         listener.every(LOOK_PERIOD_S, self._look)
 
     def belong_to(self, frame: str) -> None:
@@ -41,28 +43,37 @@ class Surroundings:
         self._map.belong_to(frame)
 
     def _look(self) -> None:
-        generation = self._platform.graph_generation()
-        if generation != self._generation:
-            self._generation = generation
-            self._read_graph()
+        self._follow_graph()
         self._map.look(self._map_topics)
 
-    def _read_graph(self) -> None:
+    def _follow_graph(self) -> None:
+        generation = self._platform.graph_generation()
+        if generation == self._generation:
+            return
+        self._generation = generation
         endpoints = self._platform.endpoints()
         publishers = [e for e in endpoints if (e.kind, e.role) == ("publisher", "topic")]
         own = {_node(e) for e in publishers if e.topic == self._topic}
         self._map_topics = _latched_clouds(publishers, self._topic, own)
-        reporting = {_node(e) for e in publishers if (e.topic, e.type) == _DIAGNOSTICS} & own
-        self._names = {name.rpartition("/")[2] for name in reporting}
-        if reporting and not self._has_reports:
+        reporting = {_node(e) for e in publishers if (e.topic, e.type) == _DIAGNOSTICS}
+        self._reporting = Counter(map(_base_name, reporting))
+        self._own_names = set(map(_base_name, reporting & own))
+        if self._own_names and not self._has_reports:
             self._has_reports = True
             self._listener.also(*_DIAGNOSTICS, self._on_report, _ALL_REPORTS)
 
     def _on_report(self, message: Any) -> None:
+        self._follow_graph()  # it may be the first report of another matcher
         for status in message.status:
             name, _, kind = status.name.partition(": ")
-            if kind == _STATUS and name in self._names:
-                self._show({"judgement": judgement_of(status)})
+            if kind == _STATUS and name in self._own_names:
+                self._show({"judgement": self._judgement(name, status)})
+
+    def _judgement(self, name: str, status: Any) -> Row:
+        # A report names its node without the namespace, and rclpy does not tell the publisher.
+        if self._reporting[name] > 1:
+            return {"text": f"unknown: several nodes are named '{name}'", "believed": False}
+        return judgement_of(status)
 
 
 def _latched_clouds(publishers: list[EndpointInfo], topic: str, nodes: set[str]) -> list[str]:
@@ -75,3 +86,7 @@ def _latched_clouds(publishers: list[EndpointInfo], topic: str, nodes: set[str])
 
 def _node(endpoint: EndpointInfo) -> str:
     return full_node_name(endpoint.node_namespace, endpoint.node_name)
+
+
+def _base_name(node: str) -> str:
+    return node.rpartition("/")[2]
