@@ -113,9 +113,44 @@ def test_a_cloud_is_drawn_from_above_on_the_map_of_its_frame(clouds) -> None:
     assert clouds.complaints() == []
 
 
-def test_the_picture_of_a_cloud_is_moved_and_zoomed(clouds) -> None:
+def turn_wheel(browser, x: int, y: int, amount: int) -> None:
+    """Turn the wheel over the picture, these pixels right of and below its middle."""
     from selenium.webdriver import ActionChains
     from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
+
+    origin = ScrollOrigin.from_element(browser.find("#cloud-canvas"), x, y)
+    before = corners_on(browser)
+    ActionChains(browser.driver).scroll_from_origin(origin, 0, amount).perform()
+    browser.until(lambda: not np.allclose(corners_on(browser), before, atol=2), "the wheel zooms")
+
+
+def fixed_point(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Return what stayed in its place while the corners were scaled."""
+    scale = np.ptp(after[:, 0]) / np.ptp(before[:, 0])
+    point: np.ndarray = np.mean(after - scale * before, axis=0) / (1 - scale)
+    return point
+
+
+def test_the_wheel_zooms_about_the_middle_while_following(clouds) -> None:
+    from selenium.webdriver import ActionChains
+
+    show_messages(clouds, "/square")
+    clouds.wait_for_text("#cloud-text", "grey: /city")
+    canvas = clouds.find("#cloud-canvas")
+    middle = np.array([canvas.size["width"], -canvas.size["height"]]) / 2
+    fitted = corners_on(clouds)
+    turn_wheel(clouds, 100, 60, 400)
+    small = corners_on(clouds)
+    np.testing.assert_allclose(fixed_point(fitted, small), middle, atol=3)
+    ActionChains(clouds.driver).drag_and_drop_by_offset(canvas, 30, -20).perform()
+    panned = corners_on(clouds)
+    turn_wheel(clouds, 100, 60, -200)
+    pointer = middle + np.array([100, -60])
+    np.testing.assert_allclose(fixed_point(panned, corners_on(clouds)), pointer, atol=5)
+
+
+def test_the_picture_of_a_cloud_is_moved_and_zoomed(clouds) -> None:
+    from selenium.webdriver import ActionChains
 
     show_messages(clouds, "/square")
     clouds.wait_for_text("#cloud-text", "grey: /city")
@@ -128,11 +163,8 @@ def test_the_picture_of_a_cloud_is_moved_and_zoomed(clouds) -> None:
     np.testing.assert_allclose(corners_on(clouds) - small, [[30, 20]] * 3, atol=1)
     clouds.click("#cloud-fit")
     np.testing.assert_allclose(corners_on(clouds), fitted, atol=1)
-    origin = ScrollOrigin.from_element(canvas)
-    ActionChains(clouds.driver).scroll_from_origin(origin, 0, 100).perform()
-    clouds.until(
-        lambda: np.ptp(corners_on(clouds)[:, 0]) < 0.9 * np.ptp(fitted[:, 0]), "the wheel zooms"
-    )
+    turn_wheel(clouds, 0, 0, 100)
+    assert np.ptp(corners_on(clouds)[:, 0]) < 0.9 * np.ptp(fitted[:, 0])
 
 
 def test_a_cloud_without_points_is_a_text(clouds) -> None:

@@ -22,7 +22,7 @@ export class CloudPicture {
     this.forget();
     this.canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
-      this.zoom(Math.exp(-event.deltaY / 500), event.offsetX, event.offsetY);
+      this.zoomByWheel(event);
     }, { passive: false });
     this.canvas.addEventListener("pointerdown", ({ pointerId }) => this.canvas.setPointerCapture(pointerId));
     this.canvas.addEventListener("pointermove", (event) => this.pan(event));
@@ -115,7 +115,13 @@ export class CloudPicture {
     }
   }
 
-  // The place under the pointer stays there; by default that of the middle.
+  // As in RViz, zooming does not end following: the middle stays in place, or following would take
+  // back what the pointer has moved. A panned view zooms about the pointer, as maps do.
+  zoomByWheel({ deltaY, offsetX, offsetY }) {
+    this.zoom(Math.exp(-deltaY / 500), ...(this.follows ? [] : [offsetX, offsetY]));
+  }
+
+  // The place at these pixels stays there; by default that of the middle.
   zoom(wanted, x = this.canvas.clientWidth / 2, y = this.canvas.clientHeight / 2) {
     const factor = Math.min(Math.max(this.pxPerMetre * wanted, FARTHEST), NEAREST) / this.pxPerMetre;
     const [right, up] = [x - this.canvas.clientWidth / 2, this.canvas.clientHeight / 2 - y];
@@ -201,9 +207,9 @@ function paintPoints({ pixels, width, height }, { cloud, centre, pxPerMetre, siz
 
 // A bar of 1, 2 or 5 times a power of ten metres.
 function drawScale(context, height, pxPerMetre) {
-  const most = 120 / pxPerMetre;
-  const power = 10 ** Math.floor(Math.log10(most));
-  const metres = ([5, 2].find((one) => one * power <= most) ?? 1) * power;
+  const maxMetres = 120 / pxPerMetre;
+  const power = 10 ** Math.floor(Math.log10(maxMetres));
+  const metres = ([5, 2].find((one) => one * power <= maxMetres) ?? 1) * power;
   const length = metres * pxPerMetre;
   context.fillStyle = context.strokeStyle = "#ffffff";
   context.font = "12px system-ui, sans-serif";
