@@ -4,12 +4,13 @@
 # Draws a run of the image pipeline and, if Chromium is installed, the page that shows it:
 # scripts/picture.sh CHIP.svg PAGE.png
 set -eu
+. "$(dirname "$0")/start_view.sh"
 export MANYCORE_PLATFORM="picture-$$"
 topic=/camera/image_inverted
 manycore run image_pipeline >build/picture.log 2>&1 &
 run=$!
 view=
-trap 'kill -INT $view $run 2>/dev/null; wait $view $run' EXIT
+trap 'kill -INT $view $run 2>/dev/null || true; wait $view $run' EXIT
 # Waits for the topic, and then for a message that has passed the pipeline.
 manycore topic echo --once --no-arr $topic sensor_msgs/msg/Image >/dev/null
 manycore view --once --period 3 -o "$1"
@@ -18,9 +19,6 @@ if ! command -v chromium >/dev/null || ! command -v chromedriver >/dev/null; the
   echo "$2 is unchanged; to draw it: apt-get install chromium chromium-driver"
   exit
 fi
-rm -f build/picture-view.log
-manycore view --port 0 >build/picture-view.log 2>/dev/null &
-view=$!
-until link=$(grep -os "http://.*" build/picture-view.log); do sleep 0.1; done
+start_view
 python scripts/page_picture.py "$link" $topic "$2"
 echo "wrote $2"

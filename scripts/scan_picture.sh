@@ -4,6 +4,7 @@
 # Draws a scan in its map, as the page shows it during a simulated drive:
 # scripts/scan_picture.sh SCAN.png
 set -eu
+. "$(dirname "$0")/start_view.sh"
 if ! command -v chromium >/dev/null || ! command -v chromedriver >/dev/null; then
   echo "$1 is unchanged; to draw it: apt-get install chromium chromium-driver"
   exit
@@ -11,15 +12,12 @@ fi
 export MANYCORE_PLATFORM="picture-$$"
 export ROS_DOMAIN_ID=$((1 + $$ % 100))
 manycore ndt simulate build/picture-street --length 160 --beams 64 >/dev/null 2>&1
-rm -f build/picture-view.log
 run= view= replay=
-trap 'kill -INT $replay $view $run 2>/dev/null; wait $replay $view $run' EXIT
+trap 'kill -INT $replay $view $run 2>/dev/null || true; wait $replay $view $run' EXIT
 manycore run ndt_offload >build/picture.log 2>&1 &
 run=$!
-manycore view --port 0 >build/picture-view.log 2>/dev/null &
-view=$!
+start_view
 manycore ndt replay build/picture-street/drive.npz --voxel 0.2 >build/picture-replay.log 2>&1 &
 replay=$!
-until link=$(grep -os "http://.*" build/picture-view.log); do sleep 0.1; done
 python scripts/scan_picture.py "$link" "$1"
 echo "wrote $1"
