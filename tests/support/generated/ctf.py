@@ -50,7 +50,7 @@ trace {{
   packet.header := struct {{ uint32_t magic; integer {{ size = 8; align = 8; }} uuid[16];
                             uint32_t stream_id; }};
 }};
-env {{ hostname = "host"; domain = "ust"; tracer_name = "lttng-ust"; tracer_major = 2;
+env {{ hostname = "{host}"; domain = "ust"; tracer_name = "lttng-ust"; tracer_major = 2;
       tracer_minor = 11; }};
 clock {{ name = monotonic; freq = 1000000000; offset_s = 1600000000; }};
 typealias integer {{ size = 64; align = 8; map = clock.monotonic.value; }} := time_t;
@@ -126,12 +126,16 @@ def published(ms: float, pid: int, tid: int, at: int = NODE) -> Made:
 
 
 def write_trace(
-    directory: Path, *packets: Sequence[Made], discarded: int = 0, context: str = CONTEXT
+    directory: Path,
+    *packets: Sequence[Made],
+    discarded: int = 0,
+    context: str = CONTEXT,
+    host: str = "host",
 ) -> Path:
     """Write a trace with some packets, after the first of which events were discarded."""
     directory.mkdir(parents=True, exist_ok=True)
     own = uuid.uuid4()
-    text = _HEAD.format(uuid=own, context=context)
+    text = _HEAD.format(uuid=own, context=context, host=host)
     for number, (name, fields) in enumerate(EVENTS.items()):
         pairs = (field.split(":") for field in fields.split())
         declared = " ".join(f"{_TYPES[kind]} _{field};" for field, kind in pairs)

@@ -158,6 +158,14 @@ def test_other_directories_and_windows_are_refused(tmp_path: Path) -> None:
         import_source(write_report(tmp_path / "report"), Window(1, 2))
 
 
+def test_an_architecture_without_statistics_is_refused(tmp_path: Path) -> None:
+    report = write_report(tmp_path / "report")
+    for path in report.rglob("stats_node.yaml"):
+        path.unlink()
+    with pytest.raises(FileError, match=r"expected statistics of callbacks .* found none"):
+        imported(report)
+
+
 AUTOWARE = os.environ.get("MANYCORE_TEST_AUTOWARE")
 
 
