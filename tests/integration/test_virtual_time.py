@@ -189,6 +189,18 @@ def test_a_recording_is_played_at_its_times(mapfile, log_of, tmp_path: Path) -> 
 
 
 @pytest.mark.needs("mcap")
+def test_a_recorder_as_a_node_is_refused(mapfile, tmp_path: Path, manycore) -> None:
+    """It waits for signals, which virtual time does not see."""
+    file = mapfile("talker")
+    recorder = f"{sys.prefix}/bin/manycore topic record -a -o {tmp_path}/bag.mcap"
+    node = f"  recorder: {{command: [sh, -c, {recorder}], cluster: 1, ends_run: true}}\n"
+    file.write_text(file.read_text() + node)
+    text = manycore("run", file, "--virtual", "--instant", "--duration", "2", status=1)
+    assert "the recorder would hold virtual time: start it beside `manycore run`" in text
+    assert not (tmp_path / "bag.mcap").exists()
+
+
+@pytest.mark.needs("mcap")
 def test_the_bench_plays_a_recording_without_losses(tmp_path: Path, manycore) -> None:
     texts = [("/news", number / 100, str(number)) for number in range(100)]
     bag = write_texts(tmp_path / "bag.mcap", texts)

@@ -19,7 +19,9 @@ from rmw_manycore_py.cli.topic.selection_options import (
     nothing_chosen,
     regex_option,
 )
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.errors.missing_library import MCAP, require
+from rmw_manycore_py.process.virtual_time import lives_in_virtual_time
 from rmw_manycore_py.recording.selection import Selection
 
 _MAX_CACHE_BYTES = 100 << 20  # default of rosbag2
@@ -117,6 +119,11 @@ def command(
     if not (topics or everything or regex or types):
         raise nothing_chosen()
     require(MCAP)
+    if lives_in_virtual_time():
+        raise ManycoreError(
+            "the recorder would hold virtual time: start it beside `manycore run`, not as a node",
+            EXIT_BAD_INPUT,
+        )
     if outside:
         leave_middleware()
     from rmw_manycore_py.cli.topic.recording_session import Settings, record
