@@ -14,6 +14,7 @@ from rmw_manycore_py.advice.isolated_executor import thread_configuration
 from rmw_manycore_py.advice.problem import ConstraintKind
 from rmw_manycore_py.advice.solving import Effort
 from rmw_manycore_py.advice.weights import OBJECTIVES, Objective
+from rmw_manycore_py.cli.common.chain import ChainText
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples, json_option, number_option
 from rmw_manycore_py.cli.common.output_file import OutputFile, writing
@@ -54,7 +55,9 @@ _NODES = "NODE,.."
     help="Of chains: p99, maximum, jitter. Or the busiest core, or bytes between clusters.",
 )
 @click.option(
-    "--chain", help="Topics of the chain that matters, separated by spaces.  [default: all chains]"
+    "--chain",
+    type=ChainText(),
+    help="Topics of the chain that matters, separated by spaces.  [default: all chains]",
 )
 @click.option(
     "--platform",

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 
+from rmw_manycore_py.cli.common.chain import chains_option
 from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.finite_range import FiniteRange
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
@@ -28,9 +29,11 @@ from rmw_manycore_py.errors.missing_library import SIMPY, require
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 from rmw_manycore_py.prediction import Prediction, Target, predict, sites_of
 from rmw_manycore_py.prediction.json_data import as_data
+from rmw_manycore_py.prediction.sites import Sites
 from rmw_manycore_py.prediction.sweep import sweep_of
 from rmw_manycore_py.prediction.target_file import target_named
 from rmw_manycore_py.profile.files import load
+from rmw_manycore_py.profile.model import Profile
 from rmw_manycore_py.trace.files import save
 from rmw_manycore_py.trace.formats import SUFFIXES
 
@@ -61,9 +64,7 @@ from rmw_manycore_py.trace.formats import SUFFIXES
 )
 @duration_option(60.0, "Simulate this many seconds.")
 @number_option("--seed", within=(0, None), default=0, help="Seed of the random numbers.")
-@click.option(
-    "--chain", "chains", multiple=True, help="Only this chain: topics separated by spaces."
-)
+@chains_option
 @click.option(
     "--deadline",
     "deadline_ms",
@@ -100,6 +101,7 @@ def command(
     wanted = [tuple(chain.split()) for chain in chains] or None
     options: dict[str, Any] = {"seed": seed, "duration_s": duration_s, "chains": wanted}
     sites = sites_of(placement)
+    print_notices(_of_unknown_nodes(sites, profile))
     found = [
         (
             label,
@@ -117,6 +119,11 @@ def command(
         _show_sweep(target, found, deadline_ms)
     else:
         _show(found[0][1], deadline_ms)
+
+
+def _of_unknown_nodes(sites: Sites, profile: Profile) -> Iterator[str]:
+    if missing := sorted(set(sites.nodes) - {node.name for node in profile.nodes}):
+        yield f"not in the profile, so simulated as idle: {', '.join(missing)}"
 
 
 def _is_saved(path: Path | None, one: Target, target: Target) -> bool:

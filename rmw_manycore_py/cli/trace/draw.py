@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from rmw_manycore_py.cli.common.chain import ChainText
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import OutputFile
 from rmw_manycore_py.cli.trace.timeline import draw
@@ -30,7 +31,11 @@ from rmw_manycore_py.trace.files import load
     type=OutputFile(".png", ".svg", ".pdf"),
     help="File to write.",
 )
-@click.option("--chain", help="Topics of the chain, separated by spaces; default: the longest.")
+@click.option(
+    "--chain",
+    type=ChainText(),
+    help="Topics of the chain, separated by spaces; default: the longest.",
+)
 def command(file: Path, output: Path, chain: str | None) -> None:
     """Draw the path of one message through a chain.
 

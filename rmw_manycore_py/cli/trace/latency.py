@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from rmw_manycore_py.cli.common.chain import chains_option
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
 from rmw_manycore_py.cli.common.output_file import OutputFile
 from rmw_manycore_py.cli.common.printing import echo, escaped, new_table, print_json, print_table
@@ -32,9 +33,7 @@ from rmw_manycore_py.trace.recorded import looked_at
 @click.option(
     "--live", is_flag=True, help="Use the events recorded so far, without consuming them."
 )
-@click.option(
-    "--chain", "chains", multiple=True, help="Only this chain: topics separated by spaces."
-)
+@chains_option
 @click.option(
     "--plot", "picture", type=OutputFile(".png", ".svg", ".pdf"), help="Also draw a chart."
 )

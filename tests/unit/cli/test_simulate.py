@@ -1,0 +1,50 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What `manycore simulate` refuses, and what it says of nodes without a profile."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from rmw_manycore_py.cli.main import cli
+from rmw_manycore_py.errors import EXIT_BAD_INPUT
+from rmw_manycore_py.profile.files import save
+from support.samples.profiles import pipeline
+
+pytestmark = pytest.mark.unit
+
+MAPFILE = """\
+nodes:
+  camera: {command: "true", cluster: 1}
+  filter: {command: "true", cluster: 1}
+  sink: {command: "true", cluster: 2}
+"""
+
+
+@pytest.fixture
+def simulate(tmp_path: Path):
+    """Return a function that simulates a mapfile of the pipeline."""
+
+    def call(mapfile: str, *options: str) -> Result:
+        (tmp_path / "map.yaml").write_text(mapfile)
+        save(pipeline(), tmp_path / "app.profile.json")
+        paths = (str(tmp_path / "map.yaml"), "--profile", str(tmp_path / "app.profile.json"))
+        return CliRunner().invoke(cli, ("simulate", *paths, "--duration", "1", *options))
+
+    return call
+
+
+def test_nodes_that_the_profile_lacks_are_named(simulate) -> None:
+    assert "not in the profile" not in simulate(MAPFILE).output
+    more = simulate(f'{MAPFILE}  planner: {{command: "true", cluster: 3}}\n')
+    assert more.exit_code == 0
+    assert "not in the profile, so simulated as idle: /planner" in more.output
+
+
+@pytest.mark.parametrize("chain", ["", " "])
+def test_a_chain_has_a_topic(simulate, chain: str) -> None:
+    result = simulate(MAPFILE, "--chain", chain)
+    assert result.exit_code == EXIT_BAD_INPUT
+    assert "expected topics separated by spaces, found none" in result.output
