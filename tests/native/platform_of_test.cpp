@@ -111,6 +111,14 @@ NoDescriptors::NoDescriptors() {
 
 NoDescriptors::~NoDescriptors() { setrlimit(RLIMIT_NOFILE, &before_); }
 
+void remove_used(const std::string & directory) {
+  wait_until(directory + " is removed", [&] {
+    std::error_code changed;  // others were faster, or made another file
+    std::filesystem::remove_all(directory, changed);
+    return access(directory.c_str(), F_OK) != 0;
+  });
+}
+
 void stop_process(pid_t pid) {
   kill(pid, SIGSTOP);
   wait_until("process " + std::to_string(pid) + " stands still", [&] {

@@ -111,6 +111,9 @@ private:
   rlimit before_{};
 };
 
+/// Removes a directory in which others make and remove files meanwhile.
+void remove_used(const std::string & directory);
+
 /// SIGSTOP for a process that is not a child; returns once all its threads are stopped.
 void stop_process(pid_t pid);
 

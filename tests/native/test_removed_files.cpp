@@ -21,7 +21,7 @@ TEST_CASE("files removed from outside: members notice, and a new platform begins
   const auto process = platform.join(1);
   const auto publisher = process->create_publisher(on_topic("/x", keep_last(1)));
   const pid_t receive_threads[] = {platform.receive_thread(1), platform.receive_thread(2)};
-  SUBCASE("all of them") { std::filesystem::remove_all(platform.paths().directory); }
+  SUBCASE("all of them") { remove_used(platform.paths().directory); }
   SUBCASE("one of them") { unlink(platform.paths().pipe(2).c_str()); }
   SUBCASE("moved away") {
     const std::string elsewhere = platform.paths().user_directory + "/elsewhere";
@@ -30,7 +30,7 @@ TEST_CASE("files removed from outside: members notice, and a new platform begins
   }
   SUBCASE("while a receive thread is being killed") {
     kill(receive_threads[0], SIGKILL);
-    std::filesystem::remove_all(platform.paths().directory);
+    remove_used(platform.paths().directory);
   }
   for (const pid_t pid : receive_threads) {
     wait_until("the receive threads have ended", [&] { return !is_running(pid); });
@@ -39,7 +39,7 @@ TEST_CASE("files removed from outside: members notice, and a new platform begins
   CHECK(refusal_of([&] { publish(*publisher, 1); }).says("restart this process"));
   CHECK(refusal_of([&] { process->require_membership(); }).code == ErrorCode::system);
   CHECK(platform.receive_threads().empty());
-  std::filesystem::remove_all(platform.paths().directory);
+  remove_used(platform.paths().directory);
   Node newcomer(platform, 1);
   CHECK(newcomer.ask("publisher /x 1") == "ok");
   platform.receive_thread(1);  // it reaps the killed newcomer
@@ -56,7 +56,7 @@ TEST_CASE("files removed from outside after the owner of the registry lock was k
     const Standstill looks_later(platform, 2);
     platform.stop_receive_thread(1);
     Registry(platform.paths()).header().needs_repair = 1;
-    std::filesystem::remove_all(platform.paths().directory);
+    remove_used(platform.paths().directory);
     kill(owner, SIGKILL);
     wait_until("it is dead", [&] { return !is_running(owner); });
   }

@@ -88,7 +88,7 @@ TEST_CASE("the chosen directory is removed while nodes run: all notice, and none
   {
     const auto process = platform.join();
     const pid_t receive_threads[] = {platform.receive_thread(1), platform.receive_thread(2)};
-    std::filesystem::remove_all(chosen.path());
+    remove_used(chosen.path());
     for (const pid_t pid : receive_threads) {
       wait_until("the receive threads have ended", [&] { return !is_running(pid); });
     }
