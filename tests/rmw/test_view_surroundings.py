@@ -221,14 +221,14 @@ class Matcher:
         self._reports.publish(DiagnosticArray(status=[status]))
 
     def wait_for_judgement(self, samples: Samples, message: str, text: str) -> None:
-        """Report until the page is told this."""
+        """Report until the page shows this."""
         samples.skip()
 
-        def is_told() -> bool:
+        def is_shown() -> bool:
             self.report(message)
             return text in [row["text"] for row in samples.rows("judgement")]
 
-        wait_until(is_told, text)
+        wait_until(is_shown, text)
 
     def end(self) -> None:
         self._node.destroy_node()

@@ -11,6 +11,7 @@ from sensor_msgs.msg import PointCloud2
 
 from rmw_manycore_py.errors import what_is_wrong
 from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.maps.map_area import RETRY_S
 from rmw_manycore_py.ndt.maps.map_tiles import TileFiles
 from rmw_manycore_py.ndt.messages.point_cloud import encode
 from rmw_manycore_py.ndt.nodes.scan_matcher.detail_publisher import DetailPublisher
@@ -19,7 +20,6 @@ from rmw_manycore_py.process.steady import steady_s
 
 TOPIC = "debug/loaded_pointcloud_map"
 MAX_SAMPLE = 100_000  # points: enough to draw, and little beside a map
-RETRY_S = 3.0
 
 
 class LoadedMap:

@@ -76,7 +76,7 @@ def test_tiles_are_read_where_the_map_is_built(tmp_path, with_points):
     builder.close()
 
 
-def test_a_map_waits_for_one_tile_of_a_sample_at_most(tmp_path):
+def test_a_map_waits_for_one_tile_of_a_sample(tmp_path):
     points = np.random.default_rng(1).uniform(0, 40, (20000, 3)).astype("f4")
     points[:, 0] **= 2  # so tiles differ
     write_tiles(tmp_path, points, 100.0, ".npz")
