@@ -65,7 +65,9 @@ def _of_cluster(loads: Loads, box: ClusterBox, rate_hz: float) -> Iterator[tuple
     (cluster,) = found
     share = cluster.used_bytes / cluster.smem_bytes if cluster.smem_bytes else 0.0
     state = "full" if share >= _FULL else "room"
-    used = f"SMEM {bytes_text(cluster.used_bytes)} of {bytes_text(cluster.smem_bytes)}"
+    used = f"SMEM {bytes_text(cluster.used_bytes)}"
+    if cluster.smem_bytes:
+        used += f" of {bytes_text(cluster.smem_bytes)}"
     yield f"k{box.id}-fill", {"class": f"fill {state}", "width": round(box.smem.width * share, 1)}
     yield f"k{box.id}-smem", {"text": used}
     cpu = loads.cpu_share(cluster.receive_thread_pid)

@@ -16,10 +16,11 @@ from rmw_manycore_py.view.listener import ADDRESS, Listener
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 _HEADERS = {
-    # Only resources of this server, and no embedding in other pages.
+    # Only resources of this server, and no embedding in pages of others.
     "Content-Security-Policy": (
         "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
-        "img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+        "img-src 'self' data:; frame-src 'self'; base-uri 'none'; form-action 'none'; "
+        "frame-ancestors 'self'"
     ),
     "Referrer-Policy": "no-referrer",  # the referrer would contain the token
     "X-Content-Type-Options": "nosniff",

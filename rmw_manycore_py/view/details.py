@@ -109,8 +109,10 @@ def _endpoint(look: Look, row: int, endpoint: Endpoint) -> Row:
 
 
 def qos_text(endpoint: Endpoint) -> str:
-    """Format the QoS of an endpoint; policies that are not the default in full."""
+    """Format the QoS of an endpoint; policies that are not the default in full; "" if unknown."""
     qos = endpoint.qos
+    if not qos:
+        return ""
     kept = "keep all" if qos["history"] == "keep_all" else f"keep last {qos['depth']}"
     words = [qos["reliability"].replace("_", " "), qos["durability"].replace("_", " "), kept]
     for name in ("deadline_ns", "lifespan_ns", "liveliness_lease_ns"):

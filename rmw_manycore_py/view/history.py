@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rmw_manycore_py.platform.monitor.sample import ClusterCounters
 from rmw_manycore_py.platform.monitor.watch import Look
 
 LENGTH = 600  # looks: five minutes at two a second
@@ -71,7 +72,7 @@ class History:
         self._times.append(time_s)
         loads, graph = look.loads, look.graph
         queued, capacity = loads.fullest
-        fill = 100 * queued / np.maximum(capacity, 1)
+        fill = np.where(capacity > 0, 100 * queued / np.maximum(capacity, 1), np.nan)
         topics = np.array([loads.rates_hz, loads.bytes_per_s, fill], dtype=np.float32)
         self.topics.append(row, graph.topics, topics)
         cpu = [100 * loads.cpu_share(member.pid) for member in graph.members]
@@ -79,11 +80,10 @@ class History:
         values = np.array([list(by_name.values())], dtype=np.float32).reshape(1, -1)
         self.nodes.append(row, tuple(by_name), values)
         whole = {
-            "messages/s": float(loads.rates_hz.sum()),
+            **totals_of(look),
             "bytes/s": float(loads.bytes_per_s.sum()),
-            "CPU %": sum(cpu),
-            "fullest queue %": float(fill.max(initial=0)),
-            **{f"SMEM {c.id} %": 100 * c.used_bytes / c.smem_bytes for c in loads.after.clusters},
+            "fullest queue %": float(np.fmax.reduce(fill, initial=np.nan)),
+            **dict(map(_smem_of, loads.after.clusters)),
         }
         self.chip.append(row, tuple(whole), np.array([list(whole.values())], dtype=np.float32))
 
@@ -112,3 +112,16 @@ class History:
     ) -> dict[str, Any]:
         times = list(self._times)[len(self._times) - len(rows) :]
         return {"times": times, "series": series}
+
+
+def _smem_of(cluster: ClusterCounters) -> tuple[str, float]:
+    """Return name and value of a cluster's SMEM: its share, if its size is known."""
+    if not cluster.smem_bytes:
+        return f"SMEM {cluster.id} bytes", float(cluster.used_bytes)
+    return f"SMEM {cluster.id} %", 100 * cluster.used_bytes / cluster.smem_bytes
+
+
+def totals_of(look: Look) -> dict[str, float]:
+    """Return messages per second and CPU usage of the whole platform."""
+    cpu = sum(look.loads.cpu_share(member.pid) for member in look.graph.members)
+    return {"messages/s": float(look.loads.rates_hz.sum()), "CPU %": 100 * cpu}

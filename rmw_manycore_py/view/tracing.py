@@ -11,7 +11,7 @@ from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native.errors import translate_native_errors
 
 if TYPE_CHECKING:
-    from rmw_manycore_py.trace.latency import ChainLatency
+    from rmw_manycore_py.trace.events import Trace
 
 # Per thread: half a minute at thousands of messages per second.
 RING_EVENTS = 1 << 18
@@ -35,22 +35,19 @@ class Tracing:
     def stop(self) -> dict[str, Any]:
         """Stop the trace if it is on, save it, and analyse its chains."""
         # Loaded when needed: the formats of trace files would delay the first picture.
-        from rmw_manycore_py.trace.chains import Messages
         from rmw_manycore_py.trace.files.saving import save_recorded
-        from rmw_manycore_py.trace.latency import latencies
 
         with translate_native_errors():
             if _transport.trace_state(self._platform).started_ns:
                 _transport.stop_trace(self._platform)
         path = self._directory / f"{self._platform}-{next(self._numbers)}.json"
         trace = save_recorded(self._platform, path)
-        messages = Messages(trace)
         return {
             "file": path.name,
             "bytes": path.stat().st_size,
             "events": trace.event_count,
             "lost": trace.lost,
-            "chains": [_chain_row(one) for one in latencies(messages, messages.chains)],
+            "chains": chain_rows(trace),
         }
 
     def file(self, name: str) -> Path | None:
@@ -59,7 +56,12 @@ class Tracing:
         return path if path.parent == self._directory and path.is_file() else None
 
 
-def _chain_row(chain: ChainLatency) -> dict[str, Any]:
-    """Return a chain without parts that have no samples: JSON has no NaN."""
-    row = chain.row()
-    return {**row, "parts": [part for part in row["parts"] if part["count"]]}
+def chain_rows(trace: Trace) -> list[dict[str, Any]]:
+    """Return the latency of all chains, without parts that have no samples: JSON has no NaN."""
+    # Loaded when needed: it would delay the first picture.
+    from rmw_manycore_py.trace.chains import Messages
+    from rmw_manycore_py.trace.latency import latencies
+
+    messages = Messages(trace)
+    rows = [one.row() for one in latencies(messages, messages.chains)]
+    return [{**row, "parts": [part for part in row["parts"] if part["count"]]} for row in rows]

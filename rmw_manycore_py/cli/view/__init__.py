@@ -7,6 +7,7 @@ import time
 import webbrowser
 from contextlib import closing
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -20,14 +21,28 @@ from rmw_manycore_py.picture.chip import Chip
 from rmw_manycore_py.platform.monitor.watch import Look, Watch
 from rmw_manycore_py.view.listener import listen
 
+if TYPE_CHECKING:
+    from rmw_manycore_py.view.trace_run import TraceRun
+
 DEFAULT_PORT = 8642
 
 
 @click.command(
     "view",
     epilog=examples(
-        "manycore view", "manycore view --port 0 --open", "manycore view --once -o chip.svg"
+        "manycore view",
+        "manycore view --port 0 --open",
+        "manycore view --once -o chip.svg",
+        "manycore view --file measured.json --file simulated.json",
     ),
+)
+@click.option(
+    "--file",
+    "files",
+    multiple=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Show a saved trace in place of the platform, of a real or a simulated run; "
+    "several: the first above the others.",
 )
 @number_option(
     "--port", within=(0, 65535), default=DEFAULT_PORT, help="Port on 127.0.0.1; 0 picks a free one."
@@ -44,7 +59,13 @@ DEFAULT_PORT = 8642
 )
 @platform_option
 def command(
-    platform: str, port: int, opens: bool, once: bool, output: Path | None, period_s: float
+    platform: str,
+    files: tuple[Path, ...],
+    port: int,
+    opens: bool,
+    once: bool,
+    output: Path | None,
+    period_s: float,
 ) -> None:
     """Show the chip in the browser.
 
@@ -54,21 +75,40 @@ def command(
     """
     if once != (output is not None):
         raise click.UsageError("--once and -o FILE require each other")
+    if output is not None and len(files) > 1:
+        raise click.UsageError("--once draws one --file")
+    if output is None:
+        require_installed(WEB_SERVER)
+    runs = [_run_in(file) for file in files]
     if output is not None:
-        _draw(platform, output, period_s)
+        if runs:
+            _write(runs[0].whole, output)
+        else:
+            _draw(platform, output, period_s)
         return
 
-    require_installed(WEB_SERVER)
     listener = listen(port)
     # Before the web server is loaded: the browser connects and draws its window meanwhile.
-    echo(f"platform {platform}: {listener.link}")
-    echo("The link holds a token that gives access to the platform. Ctrl-C stops.", err=True)
+    echo(f"{', '.join(map(str, files)) or f'platform {platform}'}: {listener.link}")
+    what = "these files" if files else "the platform"
+    echo(f"The link holds a token that gives access to {what}. Ctrl-C stops.", err=True)
     if opens:
         webbrowser.open(listener.link)
     with listener.socket:
-        from rmw_manycore_py.view.server import serve
+        from rmw_manycore_py.view.server import serve, serve_traces
 
-        serve(platform, listener, period_s)
+        if runs:
+            serve_traces(runs, listener)
+        else:
+            serve(platform, listener, period_s)
+
+
+def _run_in(file: Path) -> TraceRun:
+    # Loaded when needed: the formats of trace files would delay the first picture.
+    from rmw_manycore_py.trace.files import load
+    from rmw_manycore_py.view.trace_run import TraceRun
+
+    return TraceRun(load(file), file.name)
 
 
 def _draw(platform: str, output: Path, period_s: float) -> None:
@@ -76,11 +116,10 @@ def _draw(platform: str, output: Path, period_s: float) -> None:
     with closing(Watch(platform)) as watch:
         look_at(platform, watch)
         time.sleep(period_s)
-        look = look_at(platform, watch)
-    with writing(output):
-        output.write_text(_svg(look))
+        _write(look_at(platform, watch), output)
 
 
-def _svg(look: Look) -> str:
+def _write(look: Look, output: Path) -> None:
     chip = Chip.of(look)
-    return chip.svg(chip.marks(look))
+    with writing(output):
+        output.write_text(chip.svg(chip.marks(look)))

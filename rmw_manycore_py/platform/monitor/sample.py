@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,13 +35,41 @@ Counts = NDArray[np.int64]
 _WORDS = 14
 
 
+class ClusterCounters(Protocol):
+    """What is known of a cluster."""
+
+    @property
+    def id(self) -> int:
+        """Counted from 1."""
+
+    @property
+    def smem_bytes(self) -> int:
+        """Size of its SMEM; 0 if unknown."""
+
+    @property
+    def used_bytes(self) -> int:
+        """Of its SMEM."""
+
+    @property
+    def alive(self) -> bool:
+        """Whether its receive thread runs."""
+
+    @property
+    def receive_thread_pid(self) -> int:
+        """Process of its receive thread."""
+
+    @property
+    def messages(self) -> int:
+        """EMCOS messages that its receive thread has handled."""
+
+
 @dataclass(frozen=True)
 class Sample:
     """Counters of a platform; loads are differences of two samples."""
 
     time_s: float  # CLOCK_MONOTONIC
     graph: Graph
-    clusters: tuple[_transport.ClusterInfo, ...]
+    clusters: tuple[ClusterCounters, ...]
     counts: Counts  # rows as in graph.endpoints, columns as above
     cpu_ns: dict[int, int]  # by pid: members, receive threads, workers
 

@@ -14,6 +14,8 @@ export class Charts {
     this.place = place;
     this.groups = groups;
     this.fromZero = fromZero;
+    this.onPick = null; // of a trace: called with the moment that was clicked
+    this.moment = null; // of a trace, in seconds since its begin; null: the whole
     new ResizeObserver(() => this.plots.forEach(([plot]) => plot.setSize(this.size()))).observe(place);
     this.forget();
   }
@@ -44,13 +46,44 @@ export class Charts {
     } else {
       this.plots.forEach(([plot, own]) => plot.setData(this.data(own)));
     }
-    this.plots.forEach(([, own, latest]) => (latest.textContent = this.latest(own)));
+    this.tell();
+  }
+
+  // The charts of a trace: its times are seconds since its begin, and a click chooses one.
+  beOfTrace(onPick) {
+    this.onPick = onPick;
+  }
+
+  moveTo(seconds) {
+    this.moment = seconds;
+    this.tell();
+  }
+
+  tell() {
+    for (const [plot, own, latest] of this.plots) {
+      latest.textContent = this.latest(own);
+      if (this.onPick !== null) {
+        plot.setCursor({ left: this.moment === null ? -10 : plot.valToPos(this.moment, "x"), top: 0 });
+      }
+    }
+  }
+
+  // The index of the look whose values stand beside the curves.
+  look() {
+    if (this.onPick === null) {
+      return this.times.length - 1;
+    }
+    return this.moment === null ? -1 : this.times.findIndex((time) => time >= this.moment - 1e-6);
   }
 
   // The newest values in words, beside the curves.
   latest(names) {
+    const look = this.look();
+    if (look < 0) {
+      return "";
+    }
     const values = names.map((name) => {
-      const value = this.series.get(name).at(-1);
+      const value = this.series.get(name)[look];
       const text = value === null || value === undefined ? "nothing" : COMPACT.format(value);
       return names.length > 1 ? `${name} ${text}` : text;
     });
@@ -70,11 +103,17 @@ export class Charts {
     this.place.replaceChildren();
     this.plots = [];
     for (const [title, belongs] of this.groups) {
-      const names = [...this.series.keys()].filter(belongs);
+      const names = [...this.series.keys()].filter(belongs).filter((name) => this.isKnown(name));
       if (names.length > 0) {
         this.plots.push(this.plot(title, names));
       }
     }
+    this.tell();
+  }
+
+  // What a trace does not tell is not shown.
+  isKnown(name) {
+    return this.onPick === null || this.series.get(name).some((value) => value !== null);
   }
 
   plot(title, names) {
@@ -83,7 +122,6 @@ export class Charts {
     caption.textContent = title || names.join(", ");
     const latest = document.createElement("output");
     latest.setAttribute("aria-live", "off");
-    latest.textContent = this.latest(names);
     figure.append(caption, latest);
     this.place.append(figure);
     const style = getComputedStyle(document.documentElement);
@@ -98,13 +136,14 @@ export class Charts {
       legend: { show: names.length > 1, live: false },
       cursor: { y: false },
       axes: [{ ...axis, size: 24, values: undefined }, axis],
-      scales: { y: this.fromZero ? { range: withZero } : {} },
+      scales: { x: { time: this.onPick === null }, y: this.fromZero ? { range: withZero } : {} },
       series: [{}, ...names.map((label, index) => (
         { label, stroke: COLOURS[index % COLOURS.length], width: 1.5, points: { show: false } }
       ))],
     };
     const plot = new uPlot(options, this.data(names), figure);
     plot.root.setAttribute("aria-hidden", "true"); // curves and legend; the values are in `latest`
+    plot.over.addEventListener("click", () => this.onPick?.(plot.posToVal(plot.cursor.left, "x")));
     return [plot, names, latest];
   }
 }

@@ -35,7 +35,8 @@ export class Details {
   }
 
   // together: the topics that are drawn as one line with the chosen one
-  open(choice, together) {
+  // isHere: whether it was chosen on this page
+  open(choice, together, isHere) {
     const focused = document.activeElement;
     const wasInside = this.section.contains(focused);
     const previous = this.choice;
@@ -59,7 +60,9 @@ export class Details {
     this.endpoints.replaceChildren();
     this.parameters.hidden = kind !== "node";
     this.parametersText.textContent = "";
-    this.title.focus({ preventScroll: true });
+    if (isHere) {
+      this.title.focus({ preventScroll: true });
+    }
   }
 
   link(topic) {
@@ -124,10 +127,10 @@ function topicFacts(topic) {
   if (topic.latency !== null) {
     const { p50_us, p99_us, count } = topic.latency;
     facts.push(
-      `latency of the last ${count} takes: median ${p50_us.toFixed(1)} us, ` +
+      `latency of ${count} takes: median ${p50_us.toFixed(1)} us, ` +
         `99 % below ${p99_us.toFixed(1)} us`,
     );
-  } else {
+  } else if (!document.body.classList.contains("of-trace")) {
     facts.push("latency: start a trace to see it");
   }
   return facts.join("\n");

@@ -8,21 +8,26 @@ export function forgetHappened() {
   list.replaceChildren();
 }
 
-export function showHappened(rows, onSelect) {
+export function showHappened(rows, isOfTrace, onSelect) {
   for (const row of rows) {
-    list.prepend(item(row, onSelect));
+    list.prepend(item(row, isOfTrace, onSelect));
   }
   while (list.children.length > MAX_SHOWN) {
     list.lastChild.remove();
   }
 }
 
-function item(row, onSelect) {
+function item(row, isOfTrace, onSelect) {
   const found = document.createElement("li");
   const time = document.createElement("time");
-  const moment = new Date(row.time_s * 1000);
-  time.dateTime = moment.toISOString();
-  time.textContent = moment.toLocaleTimeString("en-GB");
+  if (isOfTrace) {
+    time.dateTime = `PT${row.time_s}S`;
+    time.textContent = `${row.time_s.toFixed(2)} s`;
+  } else {
+    const moment = new Date(row.time_s * 1000);
+    time.dateTime = moment.toISOString();
+    time.textContent = moment.toLocaleTimeString("en-GB");
+  }
   const text = document.createElement("span");
   text.className = row.kind;
   text.textContent = ` ${row.text}`;

@@ -8,10 +8,12 @@ import { Flow } from "./flow.js";
 import { forgetHappened, showHappened } from "./events.js";
 import { Picture } from "./picture.js";
 import { setUpTheme } from "./theme.js";
+import { Timeline } from "./timeline.js";
 import { Trace } from "./trace.js";
 
 const RECONNECT_MS = 1000;
 const stateLine = document.getElementById("state");
+const zoom = document.getElementById("zoom");
 const totals = document.getElementById("totals");
 const flow = new Flow(document.getElementById("flow"), document.getElementById("moving"));
 const picture = new Picture(document.getElementById("picture"), select);
@@ -22,29 +24,52 @@ const charts = new Charts(document.getElementById("charts"), [
   ["messages per second", (name) => name === "messages/s"],
   ["bytes per second", (name) => name === "bytes/s"],
   ["CPU of all processes, % of one", (name) => name === "CPU %"],
-  ["SMEM, % of each cluster's", (name) => name.startsWith("SMEM")],
+  ["SMEM, % of each cluster's", (name) => name.startsWith("SMEM") && name.endsWith("%")],
+  ["SMEM, bytes", (name) => name.startsWith("SMEM") && name.endsWith("bytes")],
   ["fullest queue, %", (name) => name.startsWith("fullest")],
 ]);
+const timeline = new Timeline((step) => send({ seek: step }), (seconds) => tell({ seconds }));
 let live = null;
 let selected = null;
+let isOfTrace = false;
+let others = null; // the pages of other traces beside this one
 
 function select(choice) {
-  if (choice === null && selected === null) {
-    return;
+  if (choice !== null || selected !== null) {
+    take(choice, true);
+    tell({ choice });
   }
+}
+
+// isHere: whether it was chosen on this page, which then has the keyboard
+function take(choice, isHere) {
   selected = choice;
   flow.limit(picture.select(choice));
-  details.open(choice, picture.together(choice?.topic));
+  details.open(choice, picture.together(choice?.topic), isHere);
+  send({ select: choice });
+}
+
+function send(message) {
   if (live !== null && live.readyState === WebSocket.OPEN) {
-    live.send(JSON.stringify({ select: choice }));
+    live.send(JSON.stringify(message));
   }
+}
+
+function tell(message) {
+  others?.postMessage(message);
 }
 
 function show(news) {
   const began = performance.now();
   showState(news.state, news.there);
+  if (news.position !== null) {
+    showMoment(news.position);
+  }
   if (news.svg !== undefined) {
     picture.replace(news.svg, news.arcs);
+    if (window.parent !== window && zoom.value === zoom.defaultValue) {
+      zoom.value = zoomToWhole(); // one above another, each is seen whole
+    }
     fitPaper();
     flow.replace(picture.svg, news.arcs, news.rates);
     flow.limit(picture.select(selected));
@@ -56,9 +81,11 @@ function show(news) {
   }
   if (news.charts !== undefined) {
     charts.add(news.charts);
-    showTotals(news.charts.series);
   }
-  showHappened(news.happened, select);
+  if (news.totals !== undefined) {
+    showTotals(news.totals);
+  }
+  showHappened(news.happened, isOfTrace, select);
   trace.show(news.trace, news.there);
   if (news.details !== undefined) {
     details.show(news.details);
@@ -70,12 +97,17 @@ function show(news) {
   }));
 }
 
+function zoomToWhole() {
+  const { width, height } = picture.svg.viewBox.baseVal;
+  const stage = document.getElementById("stage");
+  return Math.min(100, (100 * stage.clientHeight / stage.clientWidth) * (width / height));
+}
+
 // As wide as the column, unless names become too small to read, or larger than the rest.
 function fitPaper() {
   const width = picture.svg?.viewBox.baseVal.width ?? 0;
-  const zoom = document.getElementById("zoom").value / 100;
   const paper = document.getElementById("paper");
-  paper.style.width = `calc(clamp(${0.7 * width}px, 100%, ${1.5 * width}px) * ${zoom})`;
+  paper.style.width = `calc(clamp(${0.7 * width}px, 100%, ${1.5 * width}px) * ${zoom.value / 100})`;
   flow.resize();
 }
 
@@ -87,9 +119,23 @@ function showState(text, isThere) {
   document.body.classList.toggle("gone-platform", !isThere);
 }
 
-function showTotals(series) {
-  const last = (name) => Math.round((series[name] ?? [0]).at(-1) ?? 0).toLocaleString("en");
-  totals.textContent = `${last("messages/s")} messages/s, CPU ${last("CPU %")} %`;
+function showMoment(position) {
+  if (!isOfTrace) {
+    isOfTrace = true;
+    document.body.classList.add("of-trace");
+    [charts, details.charts].forEach((one) => one.beOfTrace((seconds) => timeline.byHand(seconds)));
+    trace.showChains();
+    others = new BroadcastChannel(location.pathname.split("/")[1]); // those of this server
+    others.onmessage = ({ data }) => ("choice" in data ? take(data.choice, false) : timeline.seek(data.seconds));
+  }
+  timeline.show(position);
+  const seconds = position.step === null ? null : timeline.secondsOf(position.step);
+  [charts, details.charts].forEach((one) => one.moveTo(seconds));
+}
+
+function showTotals(values) {
+  const rounded = (name) => Math.round(values[name]).toLocaleString("en");
+  totals.textContent = `${rounded("messages/s")} messages/s, CPU ${rounded("CPU %")} %`;
 }
 
 function connect() {
@@ -101,7 +147,7 @@ function connect() {
     charts.forget();
     forgetHappened(); // the server tells all of it again
     if (selected !== null) {
-      live.send(JSON.stringify({ select: selected }));
+      send({ select: selected });
     }
   };
   live.onmessage = (message) => show(JSON.parse(message.data));
@@ -123,5 +169,5 @@ document.addEventListener("keydown", (event) => {
     document.getElementById("find").focus();
   }
 });
-document.getElementById("zoom").addEventListener("input", fitPaper);
+zoom.addEventListener("input", fitPaper);
 connect();

@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 // The button that starts a trace, and what comes of it: a file and the latency of chains.
 
-import { post } from "./requests.js";
+import { get, post } from "./requests.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const HOPS = ["bridge", "communication", "node"]; // the parts that add up to a chain
@@ -54,6 +54,14 @@ export class Trace {
       this.file.hidden = true;
       this.chains.replaceChildren();
     }
+  }
+
+  // What a trace file tells of its chains.
+  async showChains() {
+    const answer = await get("chains");
+    this.section.hidden = false;
+    this.text.textContent = answer.error ?? (answer.length > 0 ? "" : "No message went through a chain.");
+    this.chains.replaceChildren(...(answer.error === undefined ? answer : []).map(chainOf));
   }
 
   offer({ file, bytes, events, lost, chains }) {

@@ -1,0 +1,147 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Counters of a platform at any time of a trace, as they would have been read then."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rmw_manycore_py.platform.monitor.sample import (
+    BYTES,
+    DEADLINES,
+    EXPIRED,
+    IN_PLACE,
+    LOST,
+    MESSAGES,
+    REFUSED,
+    SUPERSEDED,
+    Sample,
+)
+from rmw_manycore_py.trace.events import Events, Kind, Process, Trace, endpoint_ids, endpoint_in
+from rmw_manycore_py.trace.flows import merged
+from rmw_manycore_py.trace.pairs import first_of, split_by
+from rmw_manycore_py.view.trace_graph import TracedGraph
+
+_COLUMNS = DEADLINES + 2  # of a row of counts
+# Events of a kind that count in a column; whether their value is the number of messages.
+_OTHERS = (
+    (Kind.LOST, LOST, True),
+    (Kind.SUPERSEDED, SUPERSEDED, True),
+    (Kind.EXPIRED, EXPIRED, False),
+    (Kind.REFUSED, REFUSED, False),
+    (Kind.IN_PLACE, IN_PLACE, False),
+)
+
+
+class TracedCluster(NamedTuple):
+    """A cluster, as far as a trace knows it."""
+
+    id: int
+    used_bytes: int
+    receive_thread_pid: int
+    messages: int
+    alive: bool = True
+    smem_bytes: int = 0  # unknown
+
+
+@dataclass(frozen=True)
+class _Counter:
+    """What events add to a column of the counts."""
+
+    column: int
+    times_ns: NDArray[np.int64]
+    rows: NDArray[np.intp]
+    values: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class _Course:
+    """A value that was noted from time to time."""
+
+    times_ns: NDArray[np.int64]
+    values: NDArray[np.int64]
+
+    def at(self, time_ns: int) -> int:
+        """Return the value, on the line between those before and after."""
+        return int(np.interp(time_ns, self.times_ns, self.values)) if len(self.values) else 0
+
+
+class TraceCounters:
+    """All counters of a trace."""
+
+    def __init__(self, trace: Trace, traced: TracedGraph) -> None:
+        self._graph = traced.graph
+        self._rows = traced.rows
+        self._counters = tuple(self._counters_of(trace))
+        self._cpu_ns = {process.pid: _course_of(process, Kind.CPU) for process in trace.processes}
+        self._used_bytes = _smem_of(trace)
+        self._receives = {
+            process.cluster: (process.pid, _events_of(process, Kind.RECEIVE)["time_ns"])
+            for process in trace.processes
+            if process.is_receive_thread
+        }
+        clusters = {process.cluster for process in trace.processes}
+        self._clusters = sorted(clusters | self._used_bytes.keys())
+
+    def at(self, time_ns: int, time_s: float) -> Sample:
+        """Return the counters at a time of the trace, which the sample calls `time_s`."""
+        counts = np.zeros((len(self._graph.endpoints), _COLUMNS), dtype=np.int64)
+        for one in self._counters:
+            end = int(np.searchsorted(one.times_ns, time_ns, side="right"))
+            counts[:, one.column] += np.bincount(
+                one.rows[:end], weights=one.values[:end], minlength=len(counts)
+            ).astype(np.int64)
+        clusters = tuple(self._cluster(number, time_ns) for number in self._clusters)
+        cpu_ns = {pid: course.at(time_ns) for pid, course in self._cpu_ns.items()}
+        return Sample(time_s, self._graph, clusters, counts, cpu_ns)
+
+    def _cluster(self, number: int, time_ns: int) -> TracedCluster:
+        pid, received_ns = self._receives.get(number, (0, np.empty(0, np.int64)))
+        used = self._used_bytes.get(number)
+        messages = int(np.searchsorted(received_ns, time_ns, side="right"))
+        return TracedCluster(number, used.at(time_ns) if used else 0, pid, messages)
+
+    def _counters_of(self, trace: Trace) -> Iterator[_Counter]:
+        threads = list(trace.threads())
+        writes, claims = merged(threads, (Kind.WRITE,)), merged(threads, (Kind.CLAIM,))
+        written = (endpoint_ids(writes), writes["number"])
+        taken = first_of(written, (endpoint_in(claims["value"]), claims["number"]))
+        sizes = np.append(writes["value"], 0)[taken]  # of messages from before the trace: 0
+        ones = np.ones(max(trace.event_count, 1))
+        yield self._counter(MESSAGES, writes, ones)
+        yield self._counter(BYTES, writes, writes["value"])
+        yield self._counter(MESSAGES, claims, ones)
+        yield self._counter(BYTES, claims, sizes)
+        for kind, column, is_number in _OTHERS:
+            events = merged(threads, (kind,))
+            yield self._counter(column, events, events["value"] if is_number else ones)
+
+    def _counter(self, column: int, events: Events, values: NDArray[np.generic]) -> _Counter:
+        """Return a counter of the events whose endpoints have names."""
+        rows = np.array([self._rows.get(one, -1) for one in endpoint_ids(events).tolist()], np.intp)
+        is_known = rows >= 0
+        own = values[: len(events)][is_known].astype(np.float64)
+        return _Counter(column, events["time_ns"][is_known], rows[is_known], own)
+
+
+def _events_of(process: Process, kind: Kind) -> Events:
+    return merged([(process, thread) for thread in process.threads], (kind,))
+
+
+def _course_of(process: Process, kind: Kind) -> _Course:
+    events = _events_of(process, kind)
+    return _Course(events["time_ns"], events["value"].astype(np.int64))
+
+
+def _smem_of(trace: Trace) -> dict[int, _Course]:
+    events = merged(list(trace.threads()), (Kind.SMEM,))
+    return {
+        int(events["number"][own[0]]): _Course(
+            events["time_ns"][own], events["value"][own].astype(np.int64)
+        )
+        for own in split_by(events["number"])
+    }
