@@ -107,7 +107,7 @@ def _scores(
     objective: Objective,
 ) -> Iterator[float]:
     if objective == "load":
-        yield from (max(core.cpu_share for core in one.cores) for one in predictions)
+        yield from (one.busiest for one in predictions)
     elif objective == "bytes":
         for one in candidates:
             traffic = Traffic.of(problem.flows, one.clusters)

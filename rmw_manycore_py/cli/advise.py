@@ -52,7 +52,7 @@ _NODES = "NODE,.."
     type=click.Choice(OBJECTIVES),
     default="p99",
     show_default=True,
-    help="Of chains: p99, maximum, jitter. Or the busiest core, or bytes between clusters.",
+    help="Of chains: p99, maximum, jitter. Or the busiest CPU, or bytes between clusters.",
 )
 @click.option(
     "--chain",

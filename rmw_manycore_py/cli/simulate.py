@@ -159,17 +159,16 @@ def _show_sweep(
     for index in range(max((len(one.chains) for _, one in found), default=0)):
         shown = [(label, one) for label, one in found if index < len(one.chains)]
         echo(f"\n{escaped(shown[0][1].chains[index].name)}")
-        table = new_table("  if", "#count", "#p50 ms", "#p99 ms", "#max ms", *late, "#busiest core")
+        table = new_table("  if", "#count", "#p50 ms", "#p99 ms", "#max ms", *late, "#busiest CPU")
         for label, one in shown:
             chain = one.chains[index]
             missed = (str(chain.late(deadline_ms)),) if deadline_ms else ()
-            busiest = max((core.cpu_share for core in one.cores), default=0.0)
             table.add_row(
                 f"  {label}",
                 str(len(chain.samples_us)),
                 *(_ms(chain.quantile_us(share)) for share in (0.5, 0.99, 1.0)),
                 *missed,
-                f"{busiest:.0%}",
+                f"{one.busiest:.0%}",
             )
         print_table(table)
 
@@ -199,6 +198,12 @@ def _show_loads(one: Prediction) -> None:
         rate = f"{thread.messages_per_s:.1f}"
         table.add_row(str(thread.cluster), "receive thread", rate, f"{thread.cpu_share:.1%}", "")
     print_table(table)
+    if one.cpus:
+        echo("\nCPUs of this host")
+        table = new_table("#CPU", "#load")
+        for cpu in one.cpus:
+            table.add_row(str(cpu.cpu), f"{cpu.cpu_share:.1%}")
+        print_table(table)
     echo("\nmemory")
     table = new_table("#cluster", "#peak")
     for cluster, size_bytes in sorted(one.smem_bytes.items()):

@@ -79,12 +79,14 @@ class Cpu:
     """One CPU.
 
     :ivar current: the task that runs.
+    :ivar used_ns: time that it gave to tasks so far.
     """
 
     env: Environment
     slice_ns: float
     switch_ns: float
     current: Task | None = None
+    used_ns: float = 0.0
     waiting: list[Task] = field(default_factory=list)
     _since_ns: float = 0.0  # of `current`: its CPU time before is counted
     _slice_end_ns: float = 0.0
@@ -116,6 +118,7 @@ class Cpu:
         assert current is not None
         ran_ns = now - self._since_ns
         current.used_ns += ran_ns
+        self.used_ns += ran_ns
         current.left_ns -= ran_ns
         current.virtual_ns += ran_ns
         self._since_ns = now

@@ -27,6 +27,7 @@ def as_data(one: Prediction, deadline_ms: float | None = None) -> dict[str, Any]
             for chain in one.chains
         ],
         "cores": [_core(core) for core in one.cores],
+        "cpus": [asdict(cpu) for cpu in one.cpus],
         "receive_threads": [asdict(thread) for thread in one.receive_threads],
         "smem_bytes": dict(one.smem_bytes),
         "communications": [asdict(each) for each in one.communications],

@@ -12,6 +12,7 @@ from rmw_manycore_py.prediction.chains import chain_times
 from rmw_manycore_py.prediction.prediction import (
     Communication,
     CoreUse,
+    CpuUse,
     LinkUse,
     Prediction,
     QueueUse,
@@ -33,6 +34,10 @@ def outcome_of(
         duration_s=duration_s,
         chains=tuple(chain_times(simulation, chains)),
         cores=tuple(_cores(simulation.processes, duration_s)),
+        cpus=tuple(
+            CpuUse(number, cpu.used_ns / (duration_s * 1e9))
+            for number, cpu in sorted(simulation.host_cpus.items())
+        ),
         receive_threads=tuple(_receive_threads(simulation, duration_s)),
         smem_bytes=_smem_bytes(simulation),
         communications=tuple(_communications(subscriptions_of(simulation))),

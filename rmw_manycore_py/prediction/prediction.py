@@ -50,6 +50,14 @@ class CoreUse:
 
 
 @dataclass(frozen=True)
+class CpuUse:
+    """Load of a host CPU, which cores and receive threads share."""
+
+    cpu: int
+    cpu_share: float
+
+
+@dataclass(frozen=True)
 class ReceiveThreadUse:
     """Load of a cluster's receive thread."""
 
@@ -106,6 +114,7 @@ class TimerUse:
 class Prediction:
     """A simulated run.
 
+    :ivar cpus: those of a `host`; empty where each core is a CPU.
     :ivar smem_bytes: peak by cluster: what nodes take, and what is held in topic DSMs.
     :ivar overwritten: messages that a full topic DSM lost before they were read, by topic.
     :ivar trace: events as of a real run; None unless asked for.
@@ -116,6 +125,7 @@ class Prediction:
     duration_s: float
     chains: tuple[ChainTimes, ...]
     cores: tuple[CoreUse, ...]
+    cpus: tuple[CpuUse, ...]
     receive_threads: tuple[ReceiveThreadUse, ...]
     smem_bytes: Mapping[int, int]
     communications: tuple[Communication, ...]
@@ -125,6 +135,11 @@ class Prediction:
     timers: tuple[TimerUse, ...]
     executions: int
     trace: Trace | None
+
+    @property
+    def busiest(self) -> float:
+        """Load of the busiest CPU."""
+        return max([one.cpu_share for one in self.cpus or self.cores], default=0.0)
 
     @property
     def lost(self) -> int:

@@ -145,6 +145,13 @@ class Simulation:
             self._cpus[key] = Cpu(self.env, target.ns("slice_us"), target.ns("switch_us"))
         return self._cpus[key]
 
+    @property
+    def host_cpus(self) -> dict[int, Cpu]:
+        """CPUs of a host by number; none on other targets."""
+        if self.target.cpus != "host":
+            return {}
+        return {number: cpu for number, cpu in self._cpus.items() if isinstance(number, int)}
+
     def _cpus_of(self, site: Site) -> tuple[Cpu, ...]:
         if self.target.cpus == "cores":
             return (self._cpu(site.core),)

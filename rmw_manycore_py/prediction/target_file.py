@@ -62,8 +62,11 @@ def target_named(name: str) -> Target:
         cpus=content.cpus or base.cpus,
         network=content.network or base.network,
     )
-    for parameter, given in content.parameters.items():
-        target = target.changed({parameter: given.value}, given.source)
+    try:
+        for parameter, given in content.parameters.items():
+            target = target.changed({parameter: given.value}, given.source)
+    except ManycoreError as error:
+        raise ManycoreError(f"{path}: {error}", error.exit_status) from error
     return target
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import os
 import random
 from pathlib import Path
 
@@ -139,6 +140,22 @@ def test_nodes_share_cores_evenly(tmp_path: Path) -> None:
     assert result.exit_code == 0, result.output
     cores = [node.place for node in check(tmp_path / "advised.yaml").nodes]
     assert len(set(cores)) == 6  # all but the reserved ones
+
+
+def test_host_cpus_are_loaded_evenly(tmp_path: Path) -> None:
+    """Six equal nodes in clusters of their own, all on one host CPU: no core is busier."""
+    cpus = sorted(os.sched_getaffinity(0))
+    if len(cpus) < 2:
+        pytest.skip("there is one CPU")
+    profile = drawn(2, 6)
+    place = f"host_cpu: {cpus[0]}, {COMMAND}"
+    lines = [f"  n{i}: {{cluster: {1 + i % 3}, {place}}}\n" for i in range(6)]
+    mapfile, file = written(tmp_path, profile, f"platform: host\nnodes:\n{''.join(lines)}")
+    result = advise(mapfile, file, "--objective", "load", "--json")
+    assert result.exit_code == 0, result.output
+    scores = {one["name"]: one["score"] for one in json.loads(result.stdout)["candidates"]}
+    assert min(scores.values()) < 0.8 * scores["as it is"]
+    assert len({node.host_cpu for node in check(tmp_path / "advised.yaml").nodes}) > 1
 
 
 def test_a_chain_on_a_host_has_priorities(tmp_path: Path) -> None:

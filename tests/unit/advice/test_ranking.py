@@ -41,7 +41,7 @@ class Simulated(Trial):
 
 def run(times_us: Mapping[str, tuple[float, ...]]) -> Prediction:
     chains = tuple(ChainTimes(name, samples) for name, samples in times_us.items())
-    return Prediction(TARGETS["host"], 1.0, chains, (), (), {}, (), (), (), {}, (), 0, None)
+    return Prediction(TARGETS["host"], 1.0, chains, (), (), (), {}, (), (), (), {}, (), 0, None)
 
 
 def order(placement: Placement, **runs: Mapping[str, tuple[float, ...]]) -> list[Ranked]:

@@ -48,3 +48,22 @@ def test_a_chain_has_a_topic(simulate, chain: str) -> None:
     result = simulate(MAPFILE, "--chain", chain)
     assert result.exit_code == EXIT_BAD_INPUT
     assert "expected topics separated by spaces, found none" in result.output
+
+
+def test_loads_of_host_cpus_are_shown(simulate) -> None:
+    one_cpu = MAPFILE.replace("cluster: 2", "cluster: 2, host_cpu: 0").replace(
+        "cluster: 1", "cluster: 1, host_cpu: 0"
+    )
+    lines = simulate(one_cpu).output.split("CPUs of this host\n")[1].splitlines()
+    assert lines[0].split() == ["CPU", "load"]
+    number, load = lines[1].split()
+    assert number == "0"
+    assert float(load.rstrip("%")) == pytest.approx(33, abs=2)
+
+
+def test_a_platform_file_with_a_wrong_value_is_named(simulate, tmp_path: Path) -> None:
+    file = tmp_path / "slow.yaml"
+    file.write_text("base: host\nparameters: {speed: {value: 0, source: chosen}}\n")
+    result = simulate(MAPFILE, "--platform", str(file))
+    assert result.exit_code == EXIT_BAD_INPUT
+    assert f"{file}: parameter speed of a platform: expected more than 0" in result.output

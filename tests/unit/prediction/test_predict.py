@@ -50,6 +50,17 @@ def test_loads_are_rates_times_cpu_times() -> None:
     assert loads == pytest.approx({"/camera": 0.02, "/filter": 0.3, "/sink": 0.01}, abs=0.004)
 
 
+def test_a_host_cpu_has_the_load_of_all_that_run_on_it() -> None:
+    target = FREE.changed({"receive_us": 500.0}, "chosen")
+    prediction = run(pipeline(), target, sites=sites(1, 2, 2, host_cpus=(0, 0, 1)))
+    loads = {one.cpu: one.cpu_share for one in prediction.cpus}
+    assert loads == pytest.approx({0: 0.32, 1: 0.01, 3: 0.005}, abs=0.004)
+    assert prediction.busiest == loads[0]
+    chip = run(pipeline(), TARGETS["coolidge"])
+    assert not chip.cpus
+    assert chip.busiest == max(one.cpu_share for one in chip.cores)
+
+
 def test_a_slower_cpu_takes_longer() -> None:
     assert total_us(run(pipeline(), FREE.changed({"speed": 0.5}, "chosen")))[0] == pytest.approx(
         40_000, abs=0.1
