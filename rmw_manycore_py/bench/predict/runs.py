@@ -65,22 +65,27 @@ class Compared:
 def compared(plan: Plan, note: Callable[[str], None]) -> list[Compared]:
     """Measure missing runs, predict all mappings, and return both.
 
+    Each mapping runs once before any runs again: what the machine does meanwhile meets all alike.
+
     :raises ManycoreError: if a run fails.
     """
     plan.directory.mkdir(parents=True, exist_ok=True)
     profile = profile_of(plan, note)
-    found = []
-    for number in range(plan.mappings):
-        mapping = random_mapping(plan.mapfile, number, plan.seed, plan.directory)
-        runs = []
-        for turn in range(plan.repetitions):
-            note(f"{plan.name}: mapping {number + 1} of {plan.mappings}, run {turn + 1}")
-            runs.append(measured(plan, mapping, turn))
-        predicted = predicted_figures(
-            mapping, profile, plan.duration_s, range(plan.seed, plan.seed + _PREDICTED_RUNS)
-        )
-        found.append(Compared(number, runs, predicted))
-    return found
+    mappings = [
+        random_mapping(plan.mapfile, number, plan.seed, plan.directory)
+        for number in range(plan.mappings)
+    ]
+    runs: list[list[Figures]] = [[] for _ in mappings]
+    for turn in range(plan.repetitions):
+        for number, mapping in enumerate(mappings):
+            what = f"run {turn + 1} of {plan.repetitions}, mapping {number + 1} of {plan.mappings}"
+            note(f"{plan.name}: {what}")
+            runs[number].append(measured(plan, mapping, turn))
+    seeds = range(plan.seed, plan.seed + _PREDICTED_RUNS)
+    return [
+        Compared(number, own, predicted_figures(mapping, profile, plan.duration_s, seeds))
+        for number, (mapping, own) in enumerate(zip(mappings, runs, strict=True))
+    ]
 
 
 def profile_of(plan: Plan, note: Callable[[str], None]) -> Profile:
