@@ -195,7 +195,7 @@ class ReceiveThread:
         self.received += 1
         publisher = message.publisher
         self.log.add(now, Kind.RECEIVE, publisher.endpoint, message.number, self.cluster)
-        for subscription in publisher.far.get(self.cluster, ()):
+        for subscription in reversed(publisher.far.get(self.cluster, ())):  # the youngest first
             subscription.push(now, message, self.log)
         self.task.run(self.rest_ns, self._go_on)
 
@@ -215,10 +215,15 @@ class Delivery:
     receive_threads: dict[int, ReceiveThread]
 
     def deliver(self, message: Message, log: EventLog) -> None:
-        """Notify all readers, now or when the eMCOS message has come."""
+        """Notify all readers, now or when the eMCOS message has come.
+
+        In the order of the transport: those of the own cluster, then the other clusters by number.
+        """
         publisher, now = message.publisher, self.env.now
         log.add(now, Kind.WRITE, publisher.endpoint, message.number, message.size_bytes)
-        for cluster in publisher.far:
+        for subscription in publisher.near:
+            subscription.push(now, message, log)
+        for cluster in sorted(publisher.far):
             log.add(now, Kind.SEND, publisher.endpoint, message.number, cluster)
             size_bytes = message.size_bytes if publisher.is_transferred else 0
             delay_ns = self.network.send(now, publisher.cluster, cluster, size_bytes)
@@ -227,8 +232,6 @@ class Delivery:
                 after(self.env, delay_ns, _arrival(thread, message))
             else:
                 thread.arrive(message)
-        for subscription in publisher.near:
-            subscription.push(now, message, log)
         log.add(now, Kind.PUBLISH_END, publisher.endpoint, message.number)
 
 

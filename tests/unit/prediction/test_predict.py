@@ -81,6 +81,36 @@ def test_a_receive_thread_costs_its_time_between_clusters() -> None:
     assert (thread.cluster, thread.messages_per_s) == (2, pytest.approx(10, abs=0.2))
 
 
+@pytest.mark.parametrize(
+    ("clusters", "first"),
+    [
+        ((1, 3, 2), "/sink"),
+        ((1, 2, 3), "/filter"),
+        ((3, 3, 1), "/filter"),
+        ((3, 1, 3), "/sink"),
+        ((2, 1, 1), "/sink"),
+        ((1, 1, 1), "/filter"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "-".join(map(str, value)),
+)
+def test_readers_on_one_cpu_run_in_the_order_of_their_notification(
+    clusters: tuple[int, int, int], first: str
+) -> None:
+    """The own cluster first, then by number; a receive thread notifies the youngest first."""
+    camera, filtering, sink = pipeline().callbacks
+    both = pipeline(
+        callbacks=(camera, filtering, sink.model_copy(update={"trigger": "/image"})),
+        subscriptions=tuple(
+            one.model_copy(update={"topic": "/image"}) for one in pipeline().subscriptions
+        ),
+    )
+    prediction = run(both, sites=sites(*clusters, host_cpus=(0, 1, 1)))
+    waits_ms = {one.node: one.p50_us / 1e3 for one in prediction.communications}
+    other = {"/filter": "/sink", "/sink": "/filter"}[first]
+    assert waits_ms[first] == pytest.approx(0, abs=0.1)
+    assert waits_ms[other] > 0.9  # the sink's callback takes 1 ms, a slice is 2.8 ms
+
+
 def test_what_follows_a_callback_is_load_and_delays_the_next_one() -> None:
     """The sink has 100 ms for a message: it keeps up with a rest of 90 ms, not with 110."""
     loads, lost = [], []
