@@ -98,6 +98,7 @@ pictures: setup .venv/tests  ## pictures of README and docs, each from a run of 
 	$(VENV)/python scripts/plot_round_trips.py docs/pictures/round_trips.svg
 	PATH="$(CURDIR)/$(VENV):$$PATH" scripts/picture.sh docs/pictures/chip.svg docs/pictures/page.png
 	PATH="$(CURDIR)/$(VENV):$$PATH" scripts/scan_picture.sh docs/pictures/scan.png
+	PATH="$(CURDIR)/$(VENV):$$PATH" scripts/traces_picture.sh docs/pictures/traces.png
 	$(VENV)/manycore run image_pipeline --duration 10 --trace build/pictures.json >/dev/null
 	$(VENV)/manycore trace draw build/pictures.json -o docs/pictures/trace_message.png
 	$(VENV)/manycore trace latency build/pictures.json --plot docs/pictures/trace_chains.png

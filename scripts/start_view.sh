@@ -1,11 +1,12 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
-# For scripts that draw the page. Sets `view` to the process and `link` to the URL of a new viewer.
+# For scripts that draw the page. Sets `view` to the process and `link` to the URL of a new viewer,
+# which gets all arguments.
 # Fails if the viewer ends, or prints no link within 30 s.
 start_view() {
   log=build/picture-view.log
   rm -f $log
-  manycore view --port 0 >$log 2>&1 &
+  manycore view --port 0 "$@" >$log 2>&1 &
   view=$!
   tries=300
   # Not in a subshell: there the shell would not notice the end of its child.
