@@ -12,7 +12,7 @@ from pydantic import BaseModel
 
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 from rmw_manycore_py.mapfile.mapping.recorded import Recorded
-from rmw_manycore_py.prediction import Sites, predict, sites_of
+from rmw_manycore_py.prediction import Prediction, Sites, predict, sites_of
 from rmw_manycore_py.prediction.target import HOST
 from rmw_manycore_py.process.scheduling import Scheduling
 from rmw_manycore_py.profile.model import Profile
@@ -123,4 +123,18 @@ def _predicted(sites: Sites, profile: Profile, duration_s: float, seed: int) -> 
         for chain in one.chains
         if len(chain.samples_us) >= MIN_SAMPLES
     }
-    return Figures(chains=chains, cpus={cpu.cpu: cpu.cpu_share for cpu in one.cpus})
+    return Figures(chains=chains, cpus=_pinned_loads(one, sites))
+
+
+def _pinned_loads(one: Prediction, sites: Sites) -> dict[int, float]:
+    """Return the loads of CPUs by what is pinned: a trace does not tell where the rest ran."""
+    cpus: dict[int, float] = defaultdict(float)
+    for core in one.cores:
+        site = sites.of(core.nodes[0])
+        if site is not None and len(site.host_cpus) == 1:
+            cpus[site.host_cpus[0]] += core.cpu_share
+    for thread in one.receive_threads:
+        cpu = sites.receive_cpus.get(thread.cluster)
+        if cpu is not None:
+            cpus[cpu] += thread.cpu_share
+    return dict(cpus)
