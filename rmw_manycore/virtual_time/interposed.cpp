@@ -119,6 +119,19 @@ INTERPOSED int rcl_timer_call_with_info(void * timer, void * info) {
   return real(timer, info);
 }
 
+/// The callback before ends here, not in rmw_wait, whose timeout rcl computes from the due times of
+/// timers: those would be late by what passes.
+INTERPOSED int rcl_wait(void * wait_set, int64_t timeout_ns) {
+  static auto * const real = in_rcl<int(void *, int64_t)>("rcl_wait");
+  if (real == nullptr) {
+    return 1;
+  }
+  if (Member * const member = joined()) {
+    member->elapse(Step::wait, 0);
+  }
+  return real(wait_set, timeout_ns);
+}
+
 /// Threads that have not come through the middleware keep the wall clock: those of libraries wait
 /// in locks with timeouts of the kernel.
 INTERPOSED int clock_gettime(clockid_t clock, timespec * time) noexcept {

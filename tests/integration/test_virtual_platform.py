@@ -5,14 +5,20 @@ from __future__ import annotations
 
 import json
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
+import yaml
 
+from rmw_manycore_py.bench.session import program_path
 from rmw_manycore_py.mapfile import load_mapfile, resolve
+from rmw_manycore_py.papers.reference_system.bench.system import NATIVE
 from rmw_manycore_py.prediction import predict, sites_of
 from rmw_manycore_py.prediction.target_file import target_named
 from rmw_manycore_py.profile.files import save
+from rmw_manycore_py.trace.events import Kind
+from rmw_manycore_py.trace.files import load
 from support import IS_MANYCORE
 from support.nodes import timed
 from support.processes.commands import manycore_command
@@ -74,6 +80,34 @@ def test_the_bench_compares_chains_with_the_simulator(tmp_path: Path, manycore) 
     (chain,) = json.loads(text)["chains"]
     assert chain["name"] == "/image (/filter) > /small (/sink)"
     assert chain["virtual_us"] == pytest.approx(chain["simulated_us"], rel=0.001)
+
+
+def test_timers_of_native_nodes_are_not_late(tmp_path: Path, manycore) -> None:
+    """Those of rclpy wait twice after a callback, these once."""
+    kinds = {"camera": ("sensor", "", "/image"), "filter": ("transform", "/image", "/small")}
+    nodes = {}
+    for name, (kind, inputs, outputs) in {**kinds, "sink": ("command", "/small", "")}.items():
+        words = (
+            *(f"name={name}", f"kind={kind}", f"inputs={inputs}", f"outputs={outputs}"),
+            *("period_ms=100", "crunch_us=0", "message=manycore_reference_msgs/msg/Message4kb"),
+            *("payload=untouched", "depth=10", "report_period_ms=1000"),
+        )
+        node = f"exec {program_path(NATIVE)} {' '.join(words)} parent=$PPID"
+        nodes[name] = {"command": ["sh", "-c", node], "cluster": 1, "ros_arguments": False}
+    mapfile, profile, trace = (tmp_path / name for name in ("map.yaml", "p.json", "trace.csv"))
+    mapfile.write_text(yaml.safe_dump({"platform": "coolidge", "nodes": nodes}))
+    save(pipeline(), profile)
+    model = ("--profile", profile, "--platform", "coolidge")
+    manycore("run", mapfile, "--virtual", *model, "--duration", "1", "--trace", trace)
+    written_ns = [
+        time_ns
+        for process, thread in load(trace).threads()
+        for time_ns, *_, kind in thread.events.tolist()
+        if process.core == 1 and kind == Kind.WRITE
+    ]
+    assert len(written_ns) == 9
+    intervals_ns = [later - earlier for earlier, later in pairwise(written_ns)]
+    assert intervals_ns == pytest.approx([100_000_000] * 8, abs=10_000)  # the first one: a switch
 
 
 def test_time_stands_and_goes_on_when_asked(tmp_path: Path, start, manycore) -> None:
