@@ -115,7 +115,8 @@ class LiveThread:
 
     def _publish(self, publisher: Publisher, then: Then) -> None:
         message = publisher.new_message(self.live.env.now, self._taken, self._begin_ns)
-        self._run(publisher.publish_ns, lambda: self._written(message, then))
+        until_ns = self._done_ns + publisher.publish_ns
+        self._run_until(until_ns, lambda: self._written(message, then))
 
     def _written(self, message: Message, then: Then) -> None:
         self.live.deliver(message)
