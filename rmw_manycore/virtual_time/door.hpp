@@ -40,6 +40,9 @@ struct Door {
   /// Lets the others that are due now go first. An `empty` poll, repeated at the same time, takes
   /// time: a loop of polls comes to its end. False as wait().
   bool (*yield)(bool empty) noexcept;
+  /// Likewise, before a wait that does not block. Where the platform is modelled, the thread keeps
+  /// its turn, and so its CPU, unless it polls again.
+  void (*end_turn)(bool empty) noexcept;
   /// Lets the time pass that this thread takes on the platform before a step.
   void (*elapse)(Step next, uint64_t subject) noexcept;
 };
@@ -77,7 +80,7 @@ void end_turn(bool poll, const IsAnyReady & is_any_ready) {
   there->elapse(Step::wait, 0);
   const bool is_ready = is_any_ready();
   if (poll || is_ready) {
-    there->yield(!is_ready);
+    there->end_turn(!is_ready);
   }
 }
 

@@ -72,6 +72,7 @@ const Door the_door{
     return Member::find()->wait(awaited, due_ns);
   },
   [](bool empty) noexcept { return Member::find()->yield(empty); },
+  [](bool empty) noexcept { Member::find()->end_turn(empty); },
   [](Step next, uint64_t subject) noexcept { Member::find()->elapse(next, subject); },
 };
 

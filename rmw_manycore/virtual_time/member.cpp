@@ -194,6 +194,15 @@ bool Member::yield(bool empty) noexcept {
   return sleep_until(due_ns);
 }
 
+void Member::end_turn(bool empty) noexcept {
+  const int64_t at_ns = now_ns();
+  if (page_.is_modelled == 0 || (empty && own.last_empty_poll_ns == at_ns)) {
+    yield(empty);
+  } else if (empty) {
+    own.last_empty_poll_ns = at_ns;
+  }
+}
+
 /// Between callbacks, only what begins one takes time.
 void Member::elapse(Step next, uint64_t subject) noexcept {
   own.has_asked = true;

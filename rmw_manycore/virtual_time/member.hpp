@@ -29,6 +29,7 @@ public:
   /// False if time stopped being virtual before `due_ns`.
   bool sleep_until(int64_t due_ns) noexcept;
   bool yield(bool empty) noexcept;
+  void end_turn(bool empty) noexcept;
   void elapse(Step next, uint64_t subject) noexcept;
 
 private:

@@ -124,7 +124,7 @@ class LiveThread:
 
     def wait(self, then: Then) -> None:
         """End the callback, and collect ready entities."""
-        self._end(lambda: self._run(0.0, then))
+        self._end(then)
 
     def _end(self, then: Then) -> None:
         work = self._work
