@@ -23,7 +23,7 @@ struct Awaited {
 enum class Step : uint32_t {
   none,
   wait,     ///< its callback has ended
-  woken,    ///< look at what has ended its wait
+  woken,    ///< look at what has ended its wait; subject: when it would have ended by itself
   timer,    ///< call a timer; subject: its period in ns
   take,     ///< take a message; subject: the subscription's slot
   publish,  ///< subject: the publisher's slot

@@ -23,7 +23,7 @@ from rmw_manycore_py.prediction.cpu import Task
 from rmw_manycore_py.prediction.events import EventLog
 from rmw_manycore_py.prediction.executors import Work
 from rmw_manycore_py.prediction.live_thread import LiveThread
-from rmw_manycore_py.prediction.simulation import Simulation
+from rmw_manycore_py.prediction.simulation import Placed, Simulation
 from rmw_manycore_py.prediction.sources import Source, Timer
 from rmw_manycore_py.prediction.target import Target
 from rmw_manycore_py.prediction.target_file import target_named
@@ -43,8 +43,9 @@ class Live(Simulation):
         self._log = EventLog.new(False)
         self._programs = {node.name: node.full_name for node in placement.nodes}
         self._placed = {name: one for one in self.processes for name in one.nodes}
-        self._under_way: dict[int, int] = defaultdict(int)
-        self._awaiting: dict[int, list[Callable[[], None]]] = defaultdict(list)
+        self._under_way: dict[int, int] = defaultdict(int)  # messages, by subscription
+        self._inputs: dict[Placed | None, list[Subscription]] = defaultdict(list)
+        self._awaiting: dict[Placed | None, list[Callable[[], None]]] = defaultdict(list)
         self._works: dict[tuple[str, str, bool], Work] = {}
         self._own_publishers = {(one.node, one.topic): one for one in self.publishers}
         for work in self.works.values():
@@ -52,7 +53,9 @@ class Live(Simulation):
             is_topic = callback.kind == "subscription"
             self._works[self._name_of(callback), callback.trigger, is_topic] = work
             if work.subscription is not None:
-                work.subscription.notify = partial(self._arrived, work.subscription)
+                placed = self._placed.get(self._name_of(callback))
+                self._inputs[placed].append(work.subscription)
+                work.subscription.notify = partial(self._arrived, work.subscription, placed)
 
     def _start(self, source: Timer | Source, delay: float) -> None:
         """Leave what happens by itself to the real nodes."""
@@ -69,7 +72,7 @@ class Live(Simulation):
             return None
         task = Task.of(self._cpus_of(placed.site), placed.site.scheduling)
         placed.threads.append((task, self._log))
-        return LiveThread(self, task, placed.site.core.cluster, placed.rest_ns or 0.0)
+        return LiveThread(self, task, placed)
 
     def work_of(self, node: str, trigger: str, is_topic: bool) -> Work | None:
         """Return the callback of a subscription, service or client."""
@@ -120,17 +123,26 @@ class Live(Simulation):
         one = work.subscription
         return one is not None and not one.queue and self._under_way[one.endpoint] > 0
 
-    def await_arrival(self, work: Work, then: Callable[[], None]) -> None:
-        """Call a function when the next message of a subscription has come."""
-        assert work.subscription is not None
-        self._awaiting[work.subscription.endpoint].append(then)
+    def is_all_under_way(self, placed: Placed) -> bool:
+        """Return whether a process has messages to come, and none that has arrived."""
+        inputs = self._inputs[placed]
+        return not any(one.queue for one in inputs) and any(
+            self._under_way[one.endpoint] for one in inputs
+        )
 
-    def _arrived(self, subscription: Subscription) -> None:
+    def await_arrival(self, placed: Placed, then: Callable[[], None]) -> None:
+        """Call a function when the next message of a process has come."""
+        self._awaiting[placed].append(then)
+
+    def look_again(self, placed: Placed | None) -> None:
+        """Call the functions that await an arrival."""
+        for then in self._awaiting.pop(placed, ()):
+            then()
+
+    def _arrived(self, subscription: Subscription, placed: Placed | None) -> None:
         if subscription.queue[-1].publisher.cluster != subscription.cluster:
             self._under_way[subscription.endpoint] -= 1
-        waiting = self._awaiting[subscription.endpoint]
-        if waiting:
-            waiting.pop(0)()
+        self.look_again(placed)
 
 
 class Answers:
@@ -167,7 +179,7 @@ class Answers:
         elif step == "wait":
             thread.wait(then)
         elif step == "woken":
-            thread.woken(then)
+            thread.woken(float(subject), then)
         elif step == "timer":
             thread.begin(live.timer_of(program, float(subject)), then)
         elif step == "take":

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from math import inf
 from typing import Protocol
 
 from simpy import Environment
 
 from rmw_manycore_py.prediction.cpu import Task
 from rmw_manycore_py.prediction.executors import Work
+from rmw_manycore_py.prediction.simulation import Placed
 from rmw_manycore_py.prediction.topics import Message, Publisher, Taken, after
 from rmw_manycore_py.prediction.work import Execution
 
@@ -34,8 +36,14 @@ class LivePlatform(Protocol):
     def is_under_way(self, work: Work) -> bool:
         """Return whether what a thread is about to take has not arrived."""
 
-    def await_arrival(self, work: Work, then: Then) -> None:
-        """Call a function when the next message of a subscription has come."""
+    def is_all_under_way(self, placed: Placed) -> bool:
+        """Return whether a process has messages to come, and none that has arrived."""
+
+    def await_arrival(self, placed: Placed, then: Then) -> None:
+        """Call a function when the next message of a process has come."""
+
+    def look_again(self, placed: Placed) -> None:
+        """Call the functions that await an arrival."""
 
 
 @dataclass(eq=False)
@@ -44,13 +52,12 @@ class LiveThread:
 
     As ExecutorThread, but whether an execution publishes is known only when it does.
 
-    :ivar rest_ns: CPU time after a callback, until it looks for the next one.
+    :ivar placed: its process.
     """
 
     live: LivePlatform
     task: Task
-    cluster: int
-    rest_ns: float = 0.0
+    placed: Placed
     _work: Work | None = None
     _taken: Taken | None = None
     _begin_ns: float = 0.0
@@ -58,9 +65,27 @@ class LiveThread:
     _execution: Execution | None = None  # None: not drawn yet
     _left: list[tuple[float, int]] = field(default_factory=list)  # publications to come
 
-    def woken(self, then: Then) -> None:
-        """Go on after a wait, as soon as a CPU is free."""
+    def woken(self, due_ns: float, then: Then) -> None:
+        """Go on after a wait that ends at `due_ns`, or with a message that has arrived.
 
+        The real message is there when it is published.
+        """
+        env = self.live.env
+
+        def is_early() -> bool:
+            return env.now < due_ns and self.live.is_all_under_way(self.placed)
+
+        if is_early() and due_ns < inf:
+            after(env, due_ns - env.now, lambda _: self.live.look_again(self.placed))
+        self._wake_unless(is_early, then)
+
+    def _wake_unless(self, is_early: Callable[[], bool], then: Then) -> None:
+        if is_early():
+            self.live.await_arrival(self.placed, lambda: self._wake_unless(is_early, then))
+        else:
+            self._wake(then)
+
+    def _wake(self, then: Then) -> None:
         def go_on(_: object) -> None:
             if self.task.has_idle_cpu:
                 then()
@@ -77,9 +102,12 @@ class LiveThread:
         if work is None:
             self._run(0.0, then)
         elif self.live.is_under_way(work):
-            self.live.await_arrival(work, lambda: self.woken(lambda: self._dispatch(work, then)))
+            self._wake_unless(
+                lambda: self.live.is_under_way(work), lambda: self._dispatch(work, then)
+            )
         else:
-            demand_ns = work.dispatch_ns.next() + self.live.reading_ns(work, self.cluster)
+            cluster = self.placed.site.core.cluster
+            demand_ns = work.dispatch_ns.next() + self.live.reading_ns(work, cluster)
             self._run(demand_ns, lambda: self._begun(work, then))
 
     def _begun(self, work: Work, then: Then) -> None:
@@ -140,7 +168,7 @@ class LiveThread:
         if self._taken is not None:
             self._taken.end_ns = self.live.env.now
         self._work = self._taken = self._execution = None
-        self._run(self.rest_ns, then)
+        self._run(self.placed.rest_ns or 0.0, then)
 
     def _run_until(self, until_ns: float, then: Then) -> None:
         more_ns, self._done_ns = until_ns - self._done_ns, max(until_ns, self._done_ns)

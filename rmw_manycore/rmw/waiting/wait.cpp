@@ -95,9 +95,11 @@ rmw_ret_t rmw_wait(
     manycore::virtual_time::end_turn(poll, [&] { return waited.any_ready(); });
     auto ended = poll ? rmw_manycore::Ended::by_timeout : rmw_manycore::Ended::woken;
     if (!poll && !waited.any_ready()) {
-      ended =
-        rmw_manycore::sleep_until_ready(sleeper, waited, rmw_manycore::deadline_of(wait_timeout));
-      manycore::virtual_time::elapse(manycore::virtual_time::Step::woken);
+      const std::optional<int64_t> deadline_ns = rmw_manycore::deadline_of(wait_timeout);
+      ended = rmw_manycore::sleep_until_ready(sleeper, waited, deadline_ns);
+      manycore::virtual_time::elapse(
+        manycore::virtual_time::Step::woken,
+        static_cast<uint64_t>(deadline_ns.value_or(manycore::infinite_ns)));
     }
     const bool some_ready = waited.keep_ready();
     tracer.note(manycore::TraceKind::wait_end, manycore::nothing, 0, some_ready ? 1 : 0);

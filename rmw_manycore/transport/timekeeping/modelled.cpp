@@ -14,7 +14,7 @@ using virtual_time::seat_waiting;
 using virtual_time::start_ns;
 using virtual_time::Step;
 
-/// `STEP SUBJECT NODE ROLE PROGRAM`: the subject is a period in ns, or a topic.
+/// `STEP SUBJECT NODE ROLE PROGRAM`: the subject is a period or a time in ns, or a topic.
 std::string Timekeeper::words_of(const Seat & seat) const {
   const std::string program = " " + programs_.at(seat.rank).name;
   switch (seat.next) {
@@ -30,8 +30,13 @@ std::string Timekeeper::words_of(const Seat & seat) const {
       return verb + std::string(entry.topic) + " " + ns + (ns == "/" ? "" : "/") + node.name +
              role + program;
     }
+    case Step::woken: {
+      const auto due_ns = static_cast<int64_t>(seat.subject);
+      return "woken " + (due_ns == never_ns ? "inf" : std::to_string(due_ns - start_ns)) + " - -" +
+             program;
+    }
     default:
-      return (seat.next == Step::wait ? "wait" : "woken") + std::string(" - - -") + program;
+      return "wait - - -" + program;
   }
 }
 
