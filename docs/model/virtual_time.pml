@@ -270,7 +270,8 @@ proctype Timekeeper() {
               atomic {
                 assert(!dead || seat[B] != freed || has_joined);
                 assert(is_quiet_world && (seat[A] != running) && (dead || seat[B] != running));
-                now = next
+                now = next;
+                last = B    /* A comes first again */
               }
            fi
         fi

@@ -15,23 +15,32 @@ from rmw_manycore_py.prediction.target_file import target_named
 from rmw_manycore_py.profile.model import Profile
 from rmw_manycore_py.trace.chains import Messages
 from rmw_manycore_py.trace.events import Events, Kind, Process, Trace
-from rmw_manycore_py.trace.latency import TOTAL, latencies
+from rmw_manycore_py.trace.latency import TOTAL, Part, latencies
 
 _MIN_MESSAGES = 10
 
 
 @dataclass(frozen=True)
 class ComparedChain:
-    """Medians of a chain's latency from the moment at which its first message was written."""
+    """A chain's latency from the moment at which its first message was written."""
 
     name: str
-    virtual_us: float
-    simulated_us: float
+    virtual: Part
+    simulated: Part
 
     @property
     def deviation(self) -> float:
-        """Relative difference."""
-        return abs(self.virtual_us / self.simulated_us - 1.0)
+        """Relative difference of the medians."""
+        return self.deviation_at(0.5)
+
+    def deviation_at(self, share: float) -> float:
+        """Relative difference of a quantile."""
+        return abs(self.virtual.quantile(share) / self.simulated.quantile(share) - 1.0)
+
+    def row(self) -> dict[str, str | float]:
+        """Return the JSON row, of medians."""
+        times = {"virtual_us": self.virtual, "simulated_us": self.simulated}
+        return {"name": self.name, **{key: one.quantile(0.5) for key, one in times.items()}}
 
 
 def compared_chains(
@@ -52,23 +61,18 @@ def compared_chains(
         timers_together=True,
     )
     assert predicted.trace is not None
-    virtual, simulated = _medians_us(trace), _medians_us(predicted.trace)
+    virtual, simulated = _totals(trace), _totals(predicted.trace)
     for name in sorted(virtual.keys() & simulated.keys()):
         yield ComparedChain(name, virtual[name], simulated[name])
 
 
-def _medians_us(trace: Trace) -> dict[str, float]:
+def _totals(trace: Trace) -> dict[str, Part]:
     messages = Messages(_from_writes(trace))
-    totals = {
+    return {
         chain.name: part
         for chain in latencies(messages, messages.chains)
         for part in chain.parts
-        if part.name == TOTAL
-    }
-    return {
-        name: part.quantile(0.5)
-        for name, part in totals.items()
-        if len(part.samples_us) >= _MIN_MESSAGES
+        if part.name == TOTAL and len(part.samples_us) >= _MIN_MESSAGES
     }
 
 

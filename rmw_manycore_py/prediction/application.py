@@ -111,8 +111,13 @@ class _Plan:
                 yield self._executor(process, threads, shared)
 
     def _executor(self, process: int, threads: int, callbacks: list[int]) -> ExecutorPlan:
-        ordered = sorted(callbacks, key=lambda i: (_ORDER[self._profile.callbacks[i].kind], i))
+        ordered = sorted(callbacks, key=self._place_in_wait)
         return ExecutorPlan(process, max(threads, 1), tuple(ordered))
+
+    def _place_in_wait(self, index: int) -> tuple[int, int, int]:
+        """Return a sort key: subscriptions in the order of their creation."""
+        callback = self._profile.callbacks[index]
+        return _ORDER[callback.kind], callback.subscription or 0, index
 
     def _by_process(self) -> dict[int, list[int]]:
         found: dict[int, list[int]] = defaultdict(list)

@@ -190,19 +190,20 @@ class Answers:
     def _done(self, seat: str, tid: str) -> None:
         """Let a thread go on; what it does next is asked before its CPU looks for another one."""
         self._is_answered = True
-        self._answer(f"{round(self._live.env.now)} {seat} {tid}")
+        self._answer(f"{int(self._live.env.now)} {seat} {tid}")
         self.serve()
 
     def _advance(self, until_ns: float) -> None:
+        """Run what comes before `until_ns`: threads that are due then come before the rest."""
         env = self._live.env
         self._is_answered = False
         limit_ns = until_ns if until_ns >= 0 else sys.float_info.max
-        while not self._is_answered and env.peek() <= limit_ns:
+        while not self._is_answered and env.peek() < limit_ns:
             env.step()
         if not self._is_answered:
             if env.now < until_ns:
                 env.run(until=until_ns)
-            self._answer(f"{round(env.now)}")
+            self._answer(f"{int(env.now)}")
 
     def _answer(self, line: str) -> None:
         self._answers.write(f"{line}\n")

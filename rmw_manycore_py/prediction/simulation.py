@@ -84,6 +84,7 @@ class Simulation:
         self.receive_threads: dict[int, ReceiveThread] = {}
         self.delivery = Delivery(self.env, self.network, self.receive_threads)
         self.processes = self._processes()
+        self._places = {name: order for order, name in enumerate(sites.nodes)}
         self.publishers = self._publishers()
         self.all_publishers = list(self.publishers)  # with those outside of the profile
         self.works: dict[int, Work] = {}
@@ -91,7 +92,7 @@ class Simulation:
         self._joins = joins_of(self.profile)
         self._rates = rates_of_topics(self.profile)
         self._groups: dict[int, Group] = defaultdict(Group)
-        for plan in application.executors:
+        for plan in sorted(application.executors, key=self._order_in_mapfile):
             self._add_executor(plan)
         self._connect()
         if is_traced:
@@ -326,6 +327,10 @@ class Simulation:
 
     # -- executors
 
+    def _order_in_mapfile(self, plan: ExecutorPlan) -> int:
+        nodes = self.processes[plan.process].nodes
+        return min(self._places.get(name, len(self._places)) for name in nodes)
+
     def _add_executor(self, plan: ExecutorPlan) -> None:
         placed = self.processes[plan.process]
         executor = Executor(self.env, self._wake_ns)
@@ -370,7 +375,7 @@ class Simulation:
         if callback.kind == "subscription":
             self._subscription(index, executor, work, placed)
         elif callback.kind == "timer" and (period_ns := period_of(callback)):
-            timer = Timer(self.env, period_ns, executor, work)
+            timer = Timer(self.env, period_ns, executor, work, order=len(self.timers))
             self.timers[index] = timer
             phase = 1.0 if self._timers_together else self.random(7, index).random()
             self._start(timer, phase)

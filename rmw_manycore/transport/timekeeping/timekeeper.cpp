@@ -75,9 +75,11 @@ bool Timekeeper::step() {
     }
   }
   if (Seat * const seat = next_ready()) {
+    last_ = key_of(*seat);
     let_go(*seat);
     return true;
   }
+  last_ = {};  // at another time, the order begins with the first program again
   advance();
   return !is_frozen_ && page_.now_ns.load() != never_ns;
 }

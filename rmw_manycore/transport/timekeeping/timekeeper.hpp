@@ -126,7 +126,7 @@ private:
   std::map<pid_t, ProcessThreads> receive_threads_;
   std::set<std::string> reported_;
   std::optional<Turn> active_;  ///< until it has settled
-  Key last_{};                  ///< of the seat that was let go last
+  Key last_{};                  ///< of the seat that was ready and let go last at this time
   uint64_t steps_ = 0;
   int64_t end_ns_ = virtual_time::never_ns;
   std::multimap<int64_t, uint32_t> kills_;    ///< ranks of programs, by when

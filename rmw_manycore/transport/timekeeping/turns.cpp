@@ -54,7 +54,6 @@ void Timekeeper::let_go(Seat & seat) {
   Program & program = programs_.at(seat.rank);
   program.joined +=
     program.processes.try_emplace(seat.pid, seat.pid, program.joined).second ? 1 : 0;
-  last_ = key_of(seat);
   active_.emplace(Turn{program, seat.pid});
   ++steps_;
   seat.state.store(seat_running, std::memory_order_release);

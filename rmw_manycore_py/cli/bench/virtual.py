@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from dataclasses import asdict
 from itertools import zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -115,7 +114,7 @@ def command(
     if as_json:
         rows = {
             "runs": [*map(_row, found)],
-            "chains": [*map(asdict, chains)],
+            "chains": [one.row() for one in chains],
             "first_difference": _first_difference(found),
         }
         print_json({"machine": machine_header(), **rows})
@@ -141,7 +140,7 @@ def _print(found: Sequence[VirtualRun], chains: Sequence[ComparedChain]) -> None
         return
     table = new_table("#virtual us", "#simulated us", "#deviation", "chain")
     for chain in chains:
-        times = (f"{time_us:.1f}" for time_us in (chain.virtual_us, chain.simulated_us))
+        times = (f"{one.quantile(0.5):.1f}" for one in (chain.virtual, chain.simulated))
         table.add_row(*times, f"{chain.deviation:.2%}", escaped(chain.name))
     print_table(table)
 

@@ -6,11 +6,14 @@ from __future__ import annotations
 import pytest
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.prediction import TARGETS, Prediction, Target, predict
+from rmw_manycore_py.prediction import TARGETS, Prediction, Sites, Target, predict
+from rmw_manycore_py.prediction.events import START_NS
 from rmw_manycore_py.profile.model import Node, Process, Profile
+from rmw_manycore_py.trace.events import Kind, endpoint_id
 from support.samples.profiles import (
     MS,
     NODES,
+    TOPICS,
     callback,
     pipeline,
     publishes,
@@ -65,6 +68,27 @@ def test_a_slower_cpu_takes_longer() -> None:
     assert total_us(run(pipeline(), FREE.changed({"speed": 0.5}, "chosen")))[0] == pytest.approx(
         40_000, abs=0.1
     )
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_timers_that_are_due_together_go_in_the_order_of_the_mapfile(first: int) -> None:
+    timers = pipeline(
+        callbacks=(
+            callback(0, 2, kind="timer", period_ns=100 * MS, publishes=publishes(0, 1)),
+            callback(1, 2, kind="timer", period_ns=50 * MS, publishes=publishes(1, 1)),
+        )
+    )
+    places = sites(host_cpus=(0, 0, 0)).nodes
+    ordered = Sites(dict(sorted(places.items(), key=lambda one: one[0] != NODES[first])))
+    trace = run(timers, sites=ordered, is_traced=True, timers_together=True).trace
+    assert trace is not None
+    written = sorted(
+        (time_ns, trace.topic_of(endpoint_id(slot, incarnation)))
+        for _, thread in trace.threads()
+        for time_ns, _, _, slot, incarnation, kind in thread.events.tolist()
+        if kind == Kind.WRITE and time_ns >= START_NS + 100 * MS
+    )
+    assert [topic for _, topic in written[:2]] == [TOPICS[first], TOPICS[1 - first]]
 
 
 def test_a_shared_cpu_delays() -> None:
