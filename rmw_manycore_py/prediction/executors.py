@@ -152,12 +152,15 @@ class ExecutorThread:
         self._next()
 
     def _next(self) -> None:
-        work = self.executor.next_work()
-        self._work = work
-        if work is None:
+        collects = self._work is not None and not self.executor.collected
+        work = self._work = self.executor.next_work()
+        if work is None or collects:
             self.log.add(self.env.now, Kind.WAIT_BEGIN, number=round(self.task.used_ns))
+        if work is None:
             self.executor.idle.append(self)
             return
+        if collects:
+            self.log.add(self.env.now, Kind.WAIT_END, number=round(self.task.used_ns), value=1)
         if work.group is not None:
             work.group.is_busy = True
         self._claimed_ns = self.env.now

@@ -9,6 +9,7 @@ from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.prediction import TARGETS, Prediction, Sites, Target, predict
 from rmw_manycore_py.prediction.events import START_NS
 from rmw_manycore_py.profile.model import Node, Process, Profile
+from rmw_manycore_py.trace.chains import Messages
 from rmw_manycore_py.trace.events import Kind, endpoint_id
 from support.samples.profiles import (
     MS,
@@ -89,6 +90,23 @@ def test_timers_that_are_due_together_go_in_the_order_of_the_mapfile(first: int)
         if kind == Kind.WRITE and time_ns >= START_NS + 100 * MS
     )
     assert [topic for _, topic in written[:2]] == [TOPICS[first], TOPICS[1 - first]]
+
+
+def test_what_a_timer_publishes_has_no_cause_though_its_thread_did_not_sleep() -> None:
+    """The filter's timer is due at 150 ms, while it handles an image, from 101 to 161 ms."""
+    busy = pipeline(
+        callbacks=(
+            callback(0, 2, kind="timer", period_ns=100 * MS, publishes=publishes(0, 1)),
+            callback(1, 60, trigger="/image", subscription=0),
+            callback(1, 1, kind="timer", period_ns=50 * MS, publishes=publishes(1, 0.5)),
+            callback(2, 1, trigger="/small", subscription=1),
+        )
+    )
+    trace = run(busy, is_traced=True, timers_together=True).trace
+    assert trace is not None
+    messages = Messages(trace)
+    assert len(messages.arrivals["/small"]) > 100
+    assert not messages.causes
 
 
 def test_a_shared_cpu_delays() -> None:
