@@ -70,7 +70,7 @@ class Live(Simulation):
         placed = self._placed.get(self._programs.get(program, ""))
         if placed is None:
             return None
-        task = Task.of(self._cpus_of(placed.site), placed.site.scheduling)
+        task = Task.of(self.cpus.of(placed.site), placed.site.scheduling)
         placed.threads.append((task, self._log))
         return LiveThread(self, task, placed)
 

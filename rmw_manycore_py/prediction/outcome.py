@@ -36,7 +36,7 @@ def outcome_of(
         cores=tuple(_cores(simulation.processes, duration_s)),
         cpus=tuple(
             CpuUse(number, cpu.used_ns / (duration_s * 1e9))
-            for number, cpu in sorted(simulation.host_cpus.items())
+            for number, cpu in sorted(simulation.cpus.of_host.items())
         ),
         receive_threads=tuple(_receive_threads(simulation, duration_s)),
         smem_bytes=_smem_bytes(simulation),

@@ -15,7 +15,7 @@ from rmw_manycore_py.platform.smem import DEFAULT_DEPTH
 from rmw_manycore_py.platform.topology import RECEIVE_THREAD_CORE, Core
 from rmw_manycore_py.prediction.application import Application, ExecutorPlan, period_of
 from rmw_manycore_py.prediction.attribution import heard_shares, rates_of_topics
-from rmw_manycore_py.prediction.cpu import Cpu, Task
+from rmw_manycore_py.prediction.cpu import Task
 from rmw_manycore_py.prediction.draws import Blocks, Quantiles, samples
 from rmw_manycore_py.prediction.events import EventLog
 from rmw_manycore_py.prediction.executors import Executor, ExecutorThread, Group, Work
@@ -23,6 +23,7 @@ from rmw_manycore_py.prediction.network import Network
 from rmw_manycore_py.prediction.sites import Site, Sites
 from rmw_manycore_py.prediction.sources import Source, Timer, publication, request
 from rmw_manycore_py.prediction.target import Target
+from rmw_manycore_py.prediction.target_cpus import TargetCpus
 from rmw_manycore_py.prediction.topics import (
     Delivery,
     Publisher,
@@ -79,7 +80,7 @@ class Simulation:
         self._is_traced = is_traced
         self._timers_together = timers_together
         self._points = np.array(self.profile.quantile_shares)
-        self._cpus: dict[object, Cpu] = {}
+        self.cpus = TargetCpus(self.env, target, sites)
         self.network = Network(target)
         self.receive_threads: dict[int, ReceiveThread] = {}
         self.delivery = Delivery(self.env, self.network, self.receive_threads)
@@ -139,29 +140,6 @@ class Simulation:
         after(self.env, _SAMPLE_NS, self._sample)
 
     # -- CPUs and processes
-
-    def _cpu(self, key: object) -> Cpu:
-        if key not in self._cpus:
-            target = self.target
-            self._cpus[key] = Cpu(self.env, target.ns("slice_us"), target.ns("switch_us"))
-        return self._cpus[key]
-
-    @property
-    def host_cpus(self) -> dict[int, Cpu]:
-        """CPUs of a host by number; none on other targets."""
-        if self.target.cpus != "host":
-            return {}
-        return {number: cpu for number, cpu in self._cpus.items() if isinstance(number, int)}
-
-    def _cpus_of(self, site: Site) -> tuple[Cpu, ...]:
-        if self.target.cpus == "cores":
-            return (self._cpu(site.core),)
-        if self.target.cpus == "own":
-            return (self._cpu(object()),)
-        if self.target.cpus == "shared":
-            return tuple(map(self._cpu, range(round(self.target.cpu_count))))
-        known = {cpu for one in self.sites.nodes.values() for cpu in one.host_cpus}
-        return tuple(map(self._cpu, sorted(site.host_cpus or known)))
 
     def _wake_ns(self, task: Task) -> float:
         return self.target.ns("wake_us" if task.has_idle_cpu else "wake_busy_us")
@@ -262,7 +240,7 @@ class Simulation:
             return
         core = Core(cluster, RECEIVE_THREAD_CORE)
         cpu = self.sites.receive_cpus.get(cluster)
-        cpus = self._cpus_of(Site(core, () if cpu is None else (cpu,)))
+        cpus = self.cpus.of(Site(core, () if cpu is None else (cpu,)))
         priority = self.sites.receive_priorities.get(cluster)
         self.receive_threads[cluster] = ReceiveThread(
             self.env,
@@ -337,7 +315,7 @@ class Simulation:
         for order, index in enumerate(plan.callbacks):
             self._add_work(index, order, executor, placed)
         for _ in range(plan.threads):
-            task = Task.of(self._cpus_of(placed.site), placed.site.scheduling)
+            task = Task.of(self.cpus.of(placed.site), placed.site.scheduling)
             log = EventLog.new(self._is_traced)
             placed.threads.append((task, log))
             thread = ExecutorThread(

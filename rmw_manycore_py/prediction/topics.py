@@ -195,7 +195,7 @@ class ReceiveThread:
         self.received += 1
         publisher = message.publisher
         self.log.add(now, Kind.RECEIVE, publisher.endpoint, message.number, self.cluster)
-        for subscription in reversed(publisher.far.get(self.cluster, ())):  # the youngest first
+        for subscription in publisher.far.get(self.cluster, ()):
             subscription.push(now, message, self.log)
         self.task.run(self.rest_ns, self._go_on)
 
