@@ -20,13 +20,15 @@ public:
     }
     words_[process] |= words;
   }
+  /// In the order in which they were added.
   void flush() noexcept {
-    while (count_ != 0) {
-      const uint32_t process = processes_[--count_];
+    for (uint32_t i = 0; i < count_; ++i) {
+      const uint32_t process = processes_[i];
       registry_.tracer().note(TraceKind::wake, nothing, process, words_[process].count());
       registry_.processes()[process].wake.notify(words_[process]);
       words_[process] = {};
     }
+    count_ = 0;
   }
 
 private:
