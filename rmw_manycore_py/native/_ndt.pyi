@@ -127,7 +127,8 @@ class SerialMatcher:
 
     `maps`: levels of one map, coarsest first; a scan is aligned to each, from where the one before
     has led, from `maps[first]` on. Scores and derivatives are those of the last but `polishing`
-    maps: the latter only refine the pose.
+    maps: the latter only refine the pose. An alignment ends before these and the scored map unless
+    it begins there with a score above `surpassed`.
     """
 
     def __init__(self, options: MatchOptions) -> None: ...
@@ -139,6 +140,7 @@ class SerialMatcher:
         regularization_position_m: tuple[float, float] | None = None,
         first: int = 0,
         polishing: int = 0,
+        surpassed: float = ...,
     ) -> NewtonResult: ...
     def evaluate(
         self,
@@ -208,6 +210,7 @@ class WorkerGroup:
         regularization_position_m: tuple[float, float] | None = None,
         first: int = 0,
         polishing: int = 0,
+        surpassed: float = ...,
     ) -> NewtonResult: ...
     def evaluate(
         self,

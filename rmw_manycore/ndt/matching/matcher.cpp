@@ -83,18 +83,34 @@ public:
     path_.add(guess);
     NewtonResult result;
     result.pose = guess;
-    for (size_t level = 0; level <= scored_; ++level) {
+    for (size_t level = 0; level < scored_; ++level) {
       result = align(level, few_, result.pose);
     }
-    const Derivatives first = result.first;
-    finish(result);
-    result.first = first;
+    if (!is_surpassed(result)) {
+      result = align(scored_, few_, result.pose);
+      const Derivatives first = result.first;
+      finish(result);
+      result.first = first;
+    }
     result.iterations = iterations_;
     result.path = path_;
     return result;
   }
 
 private:
+  /// Whether another start was better at the end of the coarser levels; sets the result if so.
+  bool is_surpassed(NewtonResult & result) {
+    if (levels_.surpassed == Levels::no_score) {
+      return false;
+    }
+    result.at = result.first = score(few_, result.pose);
+    if (result.at.score > levels_.surpassed) {
+      return false;
+    }
+    result.outcome = Outcome::surpassed;
+    return true;
+  }
+
   /// Aligns to a level, and adds its steps to those of all.
   NewtonResult align(size_t level, const ScanView & scan, const Pose6 & guess) {
     const NewtonResult found = tried(level, scan, guess);
@@ -213,7 +229,7 @@ void check_levels(const Levels & levels) {
 
 Descent descent_of(const Levels & levels) {
   check_levels(levels);
-  Descent out{{}, levels.polishing};
+  Descent out{{}, levels.polishing, levels.surpassed};
   for (size_t i = levels.first; i < levels.maps.size(); ++i) {
     out.maps.push_back(levels.maps[i]->view());
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,11 @@ struct Levels {
   std::vector<const VoxelMap *> maps;
   size_t first = 0;      ///< index of the map that the alignment begins on; workers keep all
   size_t polishing = 0;  ///< number of finest maps that only refine the pose
+  /// Score that other starts reached on the scored level at the end of the coarser ones; this one
+  /// is not followed further unless it reaches more.
+  double surpassed = no_score;
+
+  static constexpr double no_score = -std::numeric_limits<double>::infinity();
 };
 constexpr size_t max_levels = 6;
 
@@ -46,6 +52,7 @@ using EvaluateProblem = std::function<Derivatives(const Problem &, const Pose6 &
 struct Descent {
   std::vector<MapView> maps;
   size_t polishing = 0;
+  double surpassed = Levels::no_score;
 
   /// The map of scores and derivatives.
   const MapView & scored() const { return maps[maps.size() - polishing - 1]; }

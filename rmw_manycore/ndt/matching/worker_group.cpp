@@ -86,6 +86,7 @@ void WorkerGroup::put_levels(const Levels & levels) {
   what.levels = what.end_level = static_cast<uint32_t>(levels.maps.size());
   what.first_level = static_cast<uint32_t>(levels.first);
   what.polishing = static_cast<uint32_t>(levels.polishing);
+  what.surpassed = levels.surpassed;
   for (size_t i = 0; i < levels.maps.size(); ++i) {
     name_part(what.maps[i], levels.maps[i]->header().id, levels.maps[i]->memory());
   }

@@ -32,6 +32,7 @@ struct Job {
   uint32_t first_level;         ///< level to start the alignment on
   uint32_t end_level;           ///< behind the last level of the alignment
   uint32_t polishing;           ///< number of the last of these that only refine the pose
+  double surpassed;             ///< score that other starts reached
   SharedPart scan;
   uint64_t points;
   MatchOptions options;

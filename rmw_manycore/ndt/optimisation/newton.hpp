@@ -16,6 +16,7 @@ enum class Outcome : uint32_t {
   iteration_limit,  ///< still moving after max_iterations
   no_overlap,       ///< no point has a voxel in range at the resulting pose
   degenerate,       ///< the derivatives are not finite, or all zero
+  surpassed,        ///< the coarser levels led to a place where another start was better
 };
 
 /// Poses of an alignment: the guess and the pose after each step. Steps beyond the capacity are not

@@ -29,8 +29,8 @@ struct Words<ndt::StepRule> {
 template<>
 struct Words<ndt::Outcome> {
   static constexpr const char * name = "outcome";
-  static constexpr std::array<const char *, 4> all = {
-    "converged", "iteration_limit", "no_overlap", "degenerate"};
+  static constexpr std::array<const char *, 5> all = {
+    "converged", "iteration_limit", "no_overlap", "degenerate", "surpassed"};
 };
 
 }  // namespace manycore::python

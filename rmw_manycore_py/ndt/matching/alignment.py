@@ -17,6 +17,7 @@ WHY: dict[Outcome, str] = {
     "iteration_limit": "still moving after max_iterations steps",
     "no_overlap": "no point of the scan lies in the map: wrong guess or wrong map",
     "degenerate": "the scan does not constrain the pose: too few points, or too far from the map",
+    "surpassed": "another guess led to a better place",
 }
 
 
@@ -123,7 +124,7 @@ class Alignment:
             first=Score.of(found.first),
             path=found.path,
             share_in_map=score.points_in_map / max(found.at.scan_points, 1),
-            is_degenerate=not is_maximum or ended == "no_overlap",
+            is_degenerate=not is_maximum or ended in ("no_overlap", "surpassed"),
             xy_spread_m2=by_curvature[:2, :2] * found.at.scan_points,
         )
 

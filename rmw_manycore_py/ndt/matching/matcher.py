@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -17,7 +17,6 @@ from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import (
     Pose,
-    ScanPoints,
     pose_error,
     pose_matrix,
     scan_points,
@@ -27,9 +26,10 @@ from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
 from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE, SAMPLE, explained_score
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.level import levelled
-from rmw_manycore_py.ndt.matching.native_matcher import NativeMatcher, Position
+from rmw_manycore_py.ndt.matching.native_matcher import NativeMatcher
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.places import places_around
+from rmw_manycore_py.ndt.matching.question import Question, question_of
 from rmw_manycore_py.ndt.matching.second_look import (
     CONVINCING_SHARE,
     Convinces,
@@ -45,15 +45,6 @@ BUILT_FOR = (  # options that matcher and map must agree on
     *("search", "voxel_covariance"),
 )
 FEWEST_POINTS = 6  # a pose has six unknowns; each point on a surface fixes one
-
-
-@dataclass(frozen=True)
-class Question:
-    """A scan (N, 3), its guess (4, 4), and the position of the regularization pose."""
-
-    scan: ScanPoints
-    guess: Pose
-    position: Position | None
 
 
 class Matcher:
@@ -132,14 +123,7 @@ class Matcher:
         :param only_pose: skip alignments and scores that only serve the covariance.
         """
         asked = self._asked(points, T_map_guess, T_map_regularization)
-        if isinstance(asked, Alignment):
-            return asked
-        found = self._aligned(asked)
-        for look in self._further_looks():
-            if found.is_refused or self._convinces(found):
-                break
-            found = look(found, asked)
-        return found if only_pose else self._with_covariance(found, asked)
+        return next(self._answers(asked, only_pose, lambda one: [self._looked(one)]))
 
     def align_once(
         self,
@@ -155,10 +139,8 @@ class Matcher:
         :param is_wide: align to the levels of a second look first.
         """
         asked = self._asked(points, T_map_guess, T_map_regularization)
-        if isinstance(asked, Alignment):
-            return asked
-        found = self._aligned(asked, is_wide=is_wide)
-        return found if only_pose else self._with_covariance(found, asked)
+        align = partial(self._aligned, is_wide=is_wide)
+        return next(self._answers(asked, only_pose, lambda one: [align(one)]))
 
     def closer_looks(
         self,
@@ -173,11 +155,7 @@ class Matcher:
         The first begins without what may be vehicles (vehicles.py), the second at the guess.
         """
         asked = self._asked(points, T_map_guess, T_map_regularization)
-        if isinstance(asked, Alignment):
-            yield asked
-            return
-        for found in self._closely(asked):
-            yield found if only_pose else self._with_covariance(found, asked)
+        return self._answers(asked, only_pose, self._closely)
 
     def second_look(
         self,
@@ -202,18 +180,20 @@ class Matcher:
     ) -> Question | Alignment:
         """Return what to align, or the answer if that is not possible."""
         self._require_map()
-        scan = scan_points(points)
-        guess = pose_matrix(T_map_guess)
-        wrong = pose_error(guess)
-        if wrong:
-            return Alignment.refused(None, f"the guess {wrong}", self.options)
-        if T_map_regularization is None:
-            return Question(scan, guess, None)
-        regularization = pose_matrix(T_map_regularization)
-        wrong = pose_error(regularization)
-        if wrong:
-            return Alignment.refused(guess, f"the regularization pose {wrong}", self.options)
-        return Question(scan, guess, (float(regularization[0, 3]), float(regularization[1, 3])))
+        return question_of(points, T_map_guess, T_map_regularization, self.options)
+
+    def _answers(
+        self,
+        asked: Question | Alignment,
+        only_pose: bool,
+        align: Callable[[Question], Iterable[Alignment]],
+    ) -> Iterator[Alignment]:
+        """Yield what `align` finds, with its covariance if needed, or why nothing can be found."""
+        if isinstance(asked, Alignment):
+            yield asked
+            return
+        for found in align(asked):
+            yield found if only_pose else self._with_covariance(found, asked)
 
     def _convinces(self, alignment: Alignment) -> bool:
         """Return whether a result needs no further look, by the map's own score."""
@@ -225,25 +205,26 @@ class Matcher:
             fits or alignment.explained_score > EXPLAINED_SHARE * own
         )
 
-    def _further_looks(self) -> Iterator[Callable[[Alignment, Question], Alignment]]:
-        """Yield what is tried in turn until a result convinces, the cheapest first."""
-        yield lambda found, asked: self.explained(found, asked.scan)
-        if self.options.second_look_levels:
-            yield partial(self._looked_again, convinces=self._convinces)
-        yield self._looked_closer
-        if self.options.second_look_levels:
-            yield self._looked_around
+    def _looked(self, asked: Question) -> Alignment:
+        """Return the first result that convinces of those tried in turn, else the best fit."""
+        is_far = bool(self.options.second_look_levels)
+        again = partial(self._looked_again, convinces=self._convinces)
+        looks = (again, self._looked_closer, self._looked_around)
+        found = self._weighed(asked, self._aligned(asked))
+        for look in looks if is_far else (self._looked_closer,):
+            if found.is_refused or self._convinces(found):
+                break
+            found = look(found, asked)
+        return found
+
+    def _weighed(self, asked: Question, found: Alignment) -> Alignment:
+        """Return a result that convinces by its fit, else with its explained score."""
+        return found if self._convinces(found) else self.explained(found, asked.scan)
 
     def _looked_closer(self, first: Alignment, asked: Question) -> Alignment:
         """Return what fits best: `first`, or an alignment to the finest level alone."""
-        best, looks = self.explained(first, asked.scan), first.looks
-        for found in self._closely(asked):
-            closer = self.explained(found, asked.scan)
-            best = max((best, closer), key=lambda one: max(one.fit, one.explained_score))
-            looks += 1
-            if self._convinces(best):
-                break
-        return replace(best, looks=looks)
+        closer = map(partial(self._weighed, asked), self._closely(asked))
+        return best_of(first, closer, self._convinces)
 
     def _closely(self, asked: Question) -> Iterator[Alignment]:
         """Align to the finest level from where what cannot be a vehicle leads, then as asked."""
@@ -255,8 +236,9 @@ class Matcher:
         yield self._aligned(asked, is_close=True)
 
     def _looked_again(self, first: Alignment, asked: Question, convinces: Convinces) -> Alignment:
-        def aligned_widely(start: Pose) -> Alignment:
-            return self._aligned(replace(asked, guess=start), is_wide=True)
+        def aligned_widely(start: Pose, surpassed: float) -> Alignment:
+            there = replace(asked, guess=start)
+            return self._weighed(asked, self._aligned(there, is_wide=True, surpassed=surpassed))
 
         return best_of_second_look(first, asked.guess, aligned_widely, convinces)
 
@@ -271,13 +253,17 @@ class Matcher:
         with translate_native_errors(CANNOT_WORK):
             starts = places_around(self, search_map, asked.scan, centre)
 
-        def aligned(start: Pose) -> Alignment:
-            return self._aligned(replace(asked, guess=start))
-
-        return best_of(first, starts, aligned, lambda _: False)
+        found = (self._aligned(replace(asked, guess=start)) for start in starts)
+        return best_of(first, map(partial(self._weighed, asked), found), lambda _: False)
 
     def _aligned(
-        self, asked: Question, *, is_wide: bool = False, is_close: bool = False, polish: bool = True
+        self,
+        asked: Question,
+        *,
+        is_wide: bool = False,
+        is_close: bool = False,
+        polish: bool = True,
+        surpassed: float = -np.inf,
     ) -> Alignment:
         voxel_map = self._require_map()
         polishing = voxel_map.polishing if polish else 0
@@ -288,7 +274,7 @@ class Matcher:
         begin_ns = time.monotonic_ns()
         with translate_native_errors(CANNOT_WORK):
             result = self._native.align(
-                *(levels, level.points, level.guess, asked.position, first, polishing)
+                *(levels, level.points, level.guess, asked.position, first, polishing, surpassed)
             )
         if self.on_aligned is not None:
             self.on_aligned(begin_ns)

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
+import numpy as np
+
 from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.ndt.geometry.arrays import Pose, ScanPoints
 
@@ -22,8 +24,12 @@ class NativeMatcher(Protocol):
         regularization_position_m: Position | None = None,
         first: int = 0,
         polishing: int = 0,
+        surpassed: float = -np.inf,
     ) -> _ndt.NewtonResult:
-        """Align from a guess to one map after the other; the last `polishing` refine the pose."""
+        """Align from a guess to one map after the other; the last `polishing` refine the pose.
+
+        :param surpassed: minimum score with which the scored map is begun, else the end.
+        """
         ...
 
     def evaluate(

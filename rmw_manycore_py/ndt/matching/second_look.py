@@ -30,28 +30,34 @@ CONVINCING_SHARE = 0.90
 # often from 5 m and 20 degrees, in recorded scans and in synthetic streets.
 BESIDE_M = 4.0
 
-Align = Callable[[Pose], Alignment]
+AlignWidely = Callable[[Pose, float], Alignment]
 Convinces = Callable[[Alignment], bool]
 
 
 def best_of_second_look(
-    first: Alignment, guess: Pose, align_widely: Align, convinces: Convinces
+    first: Alignment, guess: Pose, align_widely: AlignWidely, convinces: Convinces
 ) -> Alignment:
     """Return the first result that convinces, else the best fit, `first` included.
 
     :param guess: (4, 4) T_map_sensor that `first` was aligned from.
-    :param align_widely: aligns from a guess, beginning with the wide levels.
+    :param align_widely: aligns from a guess, beginning with the wide levels; ends before the finest
+        level unless the others lead to a better score there than given.
     """
-    return best_of(first, _starts(guess), align_widely, convinces)
+    reached = first.first.score
+
+    def aligned(start: Pose) -> Alignment:
+        nonlocal reached
+        found = align_widely(start, reached)
+        reached = max(reached, found.first.score)
+        return found
+
+    return best_of(first, map(aligned, _starts(guess)), convinces)
 
 
-def best_of(
-    first: Alignment, starts: Iterable[Pose], align: Align, convinces: Convinces
-) -> Alignment:
-    """Return the first result from some starts that convinces, else the best fit."""
+def best_of(first: Alignment, others: Iterable[Alignment], convinces: Convinces) -> Alignment:
+    """Return the first of other results that convinces, else the best fit, `first` included."""
     best, looks = first, first.looks
-    for start in starts:
-        found = align(start)
+    for found in others:
         looks += 1
         if _fit(found) > _fit(best):
             best = found
@@ -70,4 +76,7 @@ def _starts(guess: Pose) -> Iterator[Pose]:
 
 
 def _fit(alignment: Alignment) -> float:
-    return 0.0 if alignment.is_degenerate else alignment.fit
+    """Return how well a result fits, by what the map can contradict where that is known."""
+    if alignment.is_degenerate:
+        return 0.0
+    return max(alignment.fit, alignment.explained_score)

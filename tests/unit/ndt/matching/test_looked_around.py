@@ -10,6 +10,8 @@ from rmw_manycore_py.bench.ndt.trust_worlds import Drive, simulated
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap, WorkerMatcher
 from rmw_manycore_py.ndt.geometry.arrays import Pose
 from rmw_manycore_py.ndt.matching import voxel_map as voxel_maps
+from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE
+from rmw_manycore_py.ndt.matching.second_look import CONVINCING_SHARE
 from support.samples.ndt_world import errors, pose
 
 pytestmark = pytest.mark.unit
@@ -52,6 +54,18 @@ def test_a_scan_is_found_from_8_m_and_45_degrees(drive, matcher, monkeypatch):
         context.setattr(voxel_maps, "MAX_SEARCH_MAP_BYTES", 1000)
         too_large.set_map(VoxelMap.from_points(drive.map_points, OPTIONS))
         assert max(distances_m(too_large, drive)) > 1.0
+
+
+def test_a_right_place_that_only_evidence_supports_ends_a_second_look(drive, matcher):
+    truth = drive.poses[INDEX]
+    guess = truth @ pose(-3.5, 3.5, 0, 0, 0, -0.35)
+    assert errors(matcher.align_once(drive.scan(INDEX), guess).T_map_sensor, truth)[0] > 1.0
+    found = matcher.align(drive.scan(INDEX), guess)
+    assert errors(found.T_map_sensor, truth)[0] < 0.1
+    own = matcher.map.own_likelihood
+    assert found.fit < CONVINCING_SHARE * own
+    assert found.explained_score > EXPLAINED_SHARE * own
+    assert found.looks < 6
 
 
 def test_workers_find_the_same(drive, matcher):

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelMap
-from rmw_manycore_py.ndt.geometry.arrays import Pose
+from rmw_manycore_py.ndt.geometry.arrays import Pose, scan_points
+from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.second_look import CONVINCING_SHARE, best_of_second_look
 from support.samples.ndt_world import errors, pose, scan_at, street
 
@@ -84,7 +86,7 @@ def test_the_first_that_convinces_else_the_best(
         return replace(real, nearest_voxel_likelihood=abs(fit), is_degenerate=fit < 0)
 
     first, *more = (fitting(fit) for fit in fits)
-    found = best_of_second_look(first, NEAR, lambda _: more.pop(0), lambda one: one.fit > 0.9)
+    found = best_of_second_look(first, NEAR, lambda *_: more.pop(0), lambda one: one.fit > 0.9)
     assert (found.fit, found.looks) == (expected, looks)
 
 
@@ -93,13 +95,41 @@ def test_a_second_look_starts_from_the_guess_and_on_its_four_sides(matcher: Seri
     guess = pose(40, 1, 2, 0, 0, np.pi / 2)  # ahead is +y, left is -x
     starts = []
 
-    def align_widely(start: Pose) -> Alignment:
+    def align_widely(start: Pose, _: float) -> Alignment:
         starts.append(start[:3, 3].round(6).tolist())
         return first
 
     best_of_second_look(first, guess, align_widely, lambda _: False)
     expected = [[40, 1, 2], [40, 5, 2], [40, -3, 2], [36, 1, 2], [44, 1, 2]]
     assert starts == expected
+
+
+def test_starts_are_followed_where_they_surpass_all_before(matcher: SerialMatcher) -> None:
+    real = matcher.align_once(SCAN, NEAR)
+    scores = [5.0, 3.0, 7.0, 6.0, 8.0]
+    first, *more = (replace(real, first=replace(real.first, score=score)) for score in scores)
+    more.append(first)
+    asked = []
+
+    def align_widely(_: Pose, surpassed: float) -> Alignment:
+        asked.append(surpassed)
+        return more.pop(0)
+
+    best_of_second_look(first, NEAR, align_widely, lambda _: False)
+    assert asked == [5.0, 5.0, 7.0, 7.0, 8.0]
+
+
+def test_what_a_start_leads_to_is_aligned_no_further_where_another_was_better() -> None:
+    matcher = _ndt.SerialMatcher(match_options(OPTIONS))
+    scan = scan_points(SCAN)
+    followed = matcher.align(MAP.levels, scan, NEAR, None, 1, 1)
+    at_start = followed.first.score
+    alike = matcher.align(MAP.levels, scan, NEAR, None, 1, 1, np.nextafter(at_start, 0.0))
+    assert (alike.outcome, alike.pose.tolist()) == ("converged", followed.pose.tolist())
+    surpassed = matcher.align(MAP.levels, scan, NEAR, None, 1, 1, at_start)
+    assert (surpassed.outcome, surpassed.first.score) == ("surpassed", at_start)
+    assert 0 < surpassed.iterations < followed.iterations
+    assert Alignment.of(surpassed, OPTIONS).is_degenerate
 
 
 def test_wide_levels_come_first_in_a_second_look(matcher: SerialMatcher) -> None:
