@@ -12,6 +12,7 @@ from sensor_msgs.msg import PointCloud2
 
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
+from rmw_manycore_py.ndt.maps.map_file import write_points
 from rmw_manycore_py.ndt.maps.map_tiles import open_map, write_tiles
 from rmw_manycore_py.ndt.messages.point_cloud import decode
 from support import IS_MANYCORE
@@ -30,11 +31,11 @@ pytestmark = pytest.mark.rmw
 LEFT_BYTES = 32 * 1024  # less than a cloud
 
 
-def leave_little_room(platform: str) -> None:
+def leave_little_room(platform: str, left_bytes: int = LEFT_BYTES) -> None:
     """Charge all of cluster 1's SMEM but less than a cloud."""
     now = own_cluster()
     reserve = min(now.smem_bytes // 8, 8 << 20)  # only control blocks are allocated there
-    _transport.charge_smem(platform, now.smem_bytes - now.used_bytes - reserve - LEFT_BYTES)
+    _transport.charge_smem(platform, now.smem_bytes - now.used_bytes - reserve - left_bytes)
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="the SMEM of a cluster is rmw_manycore's")
@@ -94,3 +95,23 @@ def test_a_map_without_room_is_published_once_there_is_room(stack, start, tmp_pa
     program.wait_for("debug/loaded_pointcloud_map is not published: .* has no room for")
     _transport.charge_smem(platform, 0)
     spin_until(stack.node, lambda: maps)
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="the SMEM of a cluster is rmw_manycore's")
+def test_a_whole_map_without_room_is_published_once_there_is_room(stack, start, tmp_path):
+    """Its voxels have room from the start, its many points have not."""
+    points = np.repeat(street_map(), 50, axis=0)
+    write_points(tmp_path / "map.npz", points)
+    platform = os.environ["MANYCORE_PLATFORM"]
+    leave_little_room(platform, left_bytes=points.nbytes // 2)
+    whole = {"dynamic_map_loading__publish_loaded_map": "true"}
+    program = start(matcher_command(map_path=tmp_path / "map.npz", **whole), cluster=1)
+    stack.wait_for_matcher()
+    stack.pose_of(street_scan(), NEAR)
+    program.wait_for("debug/loaded_pointcloud_map is not published: .* has no room for")
+    maps = []
+    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    stack.node.create_subscription(PointCloud2, "debug/loaded_pointcloud_map", maps.append, kept)
+    _transport.charge_smem(platform, 0)
+    spin_until(stack.node, lambda: maps)
+    assert len(decode(maps[0])) == len(points)

@@ -337,6 +337,8 @@ class NdtScanMatcher(Node):
         self._thread.post(self._update_map)
 
     def _update_map(self) -> None:
+        if self._p.publish_loaded_map:
+            self._loaded_map.retry()
         report = self._diagnostics["map_update_status"]
         report.clear()
         now = self.get_clock().now().to_msg()

@@ -26,8 +26,9 @@ class LoadedMap:
     """Publishes points of the loaded map, transient local.
 
     With the parameter `publish_loaded_map` all of each map, as the node takes it. Without, a sample
-    of the loaded tiles once there is a subscription, and again after other tiles were loaded. A
-    sample that could not be published, or read, is read again some seconds later.
+    of the loaded tiles once there is a subscription, and again after other tiles were loaded. What
+    had no room is published some seconds later, and tiles that could not be read are read again.
+    Methods belong to one thread.
     """
 
     def __init__(self, node: Node, map_frame: str, supply: MapSupply) -> None:
@@ -37,34 +38,43 @@ class LoadedMap:
         self._map_frame = map_frame
         self._supply = supply
         self._sampled: TileFiles | None = None
-        self._reading: tuple[TileFiles, Future[Points]] | None = None
+        self._reading: Future[Points] | None = None
+        self._unpublished: PointCloud2 | None = None
         self._retry_s = 0.0
 
-    def publish(self, points: Points) -> bool:
-        """Publish points (N, 3); return whether there was room for them."""
+    def publish(self, points: Points) -> None:
+        """Publish points (N, 3), later if there is no room for them."""
         stamp = self._node.get_clock().now().to_msg()
-        return self._publisher.publish(encode(points, stamp, self._map_frame))
+        self._publish(encode(points, stamp, self._map_frame))
+
+    def retry(self) -> None:
+        """Publish what had no room."""
+        if self._unpublished is not None and steady_s() > self._retry_s:
+            self._publish(self._unpublished)
 
     def look(self) -> None:
         """Publish a sample that has been read, or have one read if it is wanted."""
-        if self._reading is not None:
-            self._publish_read(*self._reading)
+        self.retry()
+        if self._reading is not None and self._reading.done():
+            self._publish_read(self._reading)
         files = self._supply.loaded_files
         if self._reading is not None or files is None or files == self._sampled:
             return
         if self._publisher.is_wanted and steady_s() > self._retry_s:
-            self._reading = files, self._supply.sample(files, MAX_SAMPLE)
+            self._sampled = files
+            self._reading = self._supply.sample(files, MAX_SAMPLE)
 
-    def _publish_read(self, files: TileFiles, reading: Future[Points]) -> None:
-        if not reading.done():
-            return
+    def _publish(self, message: PointCloud2) -> None:
+        is_published = self._publisher.publish(message)
+        self._unpublished = None if is_published else message
+        if not is_published:
+            self._retry_s = steady_s() + RETRY_S
+
+    def _publish_read(self, reading: Future[Points]) -> None:
         self._reading = None
-        points = None
         try:
-            points = reading.result()
+            self.publish(reading.result())
         except Exception as error:  # such as a tile that is gone
             self._node.get_logger().warning(f"{TOPIC} is not published: {what_is_wrong(error)}")
-        if points is not None and self.publish(points):
-            self._sampled = files
-        else:
+            self._sampled = None
             self._retry_s = steady_s() + RETRY_S
