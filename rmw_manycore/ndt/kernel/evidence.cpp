@@ -51,6 +51,19 @@ int32_t cell_along(const MapHeader & map, double place_m, size_t axis) {
   return static_cast<int32_t>(cell) - map.first_cell[axis];
 }
 
+/// Whether a voxel may be that of a cell, give or take rounding: most in range of it are not.
+bool is_near(const MapHeader & map, const VoxelLine & voxel, const Cell & cell) {
+  constexpr double half_cells = 0.6;
+  for (size_t i = 0; i < 3; ++i) {
+    const double middle_m = (cell[i] + map.first_cell[i] + 0.5) * map.voxel_size_m;
+    const double away_m = std::abs(static_cast<double>(voxel.mean_m[i]) - middle_m);
+    if (away_m > half_cells * map.voxel_size_m) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// The voxel of the cell itself among those in range of it; null without one.
 const VoxelLine * own_voxel(const MapView & map, const Cell & cell) {
   const MapHeader & header = *map.header;
@@ -63,9 +76,9 @@ const VoxelLine * own_voxel(const MapView & map, const Cell & cell) {
   }
   for (const uint32_t * line = map.lists + find_list(map, key); *line != 0; ++line) {
     const VoxelLine & voxel = map.lines[*line];
-    bool is_own = true;
-    for (size_t i = 0; i < 3; ++i) {
-      is_own &= cell_along(header, static_cast<double>(voxel.mean_m[i]), i) == cell[i];
+    bool is_own = is_near(header, voxel, cell);
+    for (size_t i = 0; i < 3 && is_own; ++i) {
+      is_own = cell_along(header, static_cast<double>(voxel.mean_m[i]), i) == cell[i];
     }
     if (is_own) {
       return &voxel;
@@ -169,18 +182,21 @@ bool is_past_map(const MapView & map, const Vector3 & from_m, const Vector3 & to
     std::floor(std::sqrt(dot(ray, ray)) * steps_per_voxel / map.header->voxel_size_m);
   const auto [first, last_share] = part_in_map(*map.header, from_m, ray);
   const double end = std::min(std::ceil(last_share * steps) + 1, steps);
-  const VoxelLine * last = nullptr;
+  Cell last = {-1, -1, -1};
   for (double step = std::max(std::floor(first * steps), 1.0); step < end; ++step) {
     Cell cell;
     for (size_t i = 0; i < 3; ++i) {
       const double place_m = from_m[i] + ray[i] * step / steps;
       cell[i] = cell_along(*map.header, place_m, i);
     }
+    if (cell == last) {
+      continue;
+    }
+    last = cell;
     const VoxelLine * const voxel = own_voxel(map, cell);
-    if (voxel != nullptr && voxel != last && passes(*map.header, *voxel, from_m, to_m)) {
+    if (voxel != nullptr && passes(*map.header, *voxel, from_m, to_m)) {
       return true;
     }
-    last = voxel;
   }
   return false;
 }
