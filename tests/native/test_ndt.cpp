@@ -87,7 +87,7 @@ TEST_CASE("all instruction sets compute the same sums, whatever the size of the 
   }
 }
 
-TEST_CASE("a thinned scan has the sums of every n-th group of points") {
+TEST_CASE("a thinned scan has the sums of groups of points spread over it") {
   const std::vector<double> points = ground();
   const VoxelMap map =
     build_voxel_map(points.data(), points.size() / 3, map_options(Search::radius));
@@ -97,10 +97,12 @@ TEST_CASE("a thinned scan has the sums of every n-th group of points") {
     const ScanView whole =
       lay_out_scan(scan.data(), count, floats.with_room_for(scan_floats(count)));
     const ScanView few = thinned(whole, 2000);
-    CHECK(few.step == std::max<size_t>(1, count / 2000));
+    CHECK(few.is_thinned() == (count >= 4000));
+    CHECK(few.used == (few.is_thinned() ? 2000 / group_points : whole.groups));
     std::vector<float> kept;
-    for (size_t i = 0; i < whole.points; ++i) {
-      if (i / group_points % few.step == 0) {
+    for (size_t number = 0; number < few.used; ++number) {
+      const size_t first = number * whole.groups / few.used * group_points;
+      for (size_t i = first; i < std::min(first + group_points, whole.points); ++i) {
         kept.insert(kept.end(), {whole.x_m[i], whole.y_m[i], whole.z_m[i]});
       }
     }

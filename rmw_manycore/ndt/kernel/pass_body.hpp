@@ -235,7 +235,8 @@ TangentSums run(
   F sums[sum_count] = {};
   TangentSums out;
   size_t undrained = 0;
-  for (size_t group = bin * scan.step; group < scan.groups; group += bin_count * scan.step) {
+  for (size_t number = bin; number < scan.used; number += bin_count) {
+    const size_t group = scan.group(number);
     for (size_t part = 0; part < group_points; part += Lanes::width) {
       Sight sight = look(map, scan, c, group * group_points + part, find);
       PointSums points = {};
@@ -277,7 +278,8 @@ TangentSums derive(
 void search(
   const MapView & map, const ScanView & scan, const PassPose & pose, size_t bin, uint32_t * found) {
   const Constants c = constants_of(*map.header, pose, 0);
-  for (size_t group = bin * scan.step; group < scan.groups; group += bin_count * scan.step) {
+  for (size_t number = bin; number < scan.used; number += bin_count) {
+    const size_t group = scan.group(number);
     for (size_t part = 0; part < group_points; part += Lanes::width) {
       const size_t first = group * group_points + part;
       const Sight sight = look(map, scan, c, first, LookUp{});

@@ -83,15 +83,16 @@ ScanView lay_out_scan(const float * xyz_m, size_t count, float * floats) {
 ScanView view_scan(const float * floats, size_t points) {
   const size_t groups = (points + group_points - 1) / group_points;
   const size_t stride = groups * group_points;
-  return {floats, floats + stride, floats + 2 * stride, points, groups};
+  return {floats, floats + stride, floats + 2 * stride, points, groups, groups};
 }
 
 ScanView thinned(const ScanView & scan, size_t points) {
   ScanView out = scan;
-  out.step = std::max<size_t>(1, scan.points / points);
-  const size_t used = (scan.groups + out.step - 1) / out.step;
-  const bool has_last = used > 0 && (used - 1) * out.step == scan.groups - 1;
-  out.points = used * group_points - (has_last ? scan.groups * group_points - scan.points : 0);
+  if (scan.points >= 2 * points) {
+    out.used = points / group_points;
+    out.stride = scan.groups * ScanView::one / out.used;
+    out.points = out.used * group_points;  // the last group, which is padded, is not used
+  }
   return out;
 }
 

@@ -22,9 +22,16 @@ struct ScanView {
   const float * x_m;
   const float * y_m;
   const float * z_m;
-  size_t points;  ///< without padding and what `step` leaves out
+  size_t points;  ///< without padding and groups that are not used
   size_t groups;
-  size_t step = 1;  ///< of the groups every `step`-th is used
+  size_t used;            ///< number of groups that are used, spread evenly over all
+  uint64_t stride = one;  ///< from one used group to the next, in 2^-32
+
+  static constexpr uint64_t one = uint64_t{1} << 32;
+
+  /// Index of a used group, which are numbered from 0.
+  size_t group(size_t number) const { return (number * stride) / one; }
+  bool is_thinned() const { return used < groups; }
 };
 
 /// Number of floats for a scan of this many points.
@@ -39,7 +46,7 @@ ScanView lay_out_scan(const float * xyz_m, size_t count, float * floats);
 /// View of the scan that lay_out_scan() left in `floats`, for example from another process.
 ScanView view_scan(const float * floats, size_t points);
 
-/// View of every n-th group of a whole scan, so that about `points` remain, or a few more.
+/// View of about `points` of a whole scan; all of it if they are less than twice as many.
 ScanView thinned(const ScanView & scan, size_t points);
 
 }  // namespace manycore::ndt

@@ -53,15 +53,12 @@ double share_of(const Derivatives & at) {
   return at.scan_points > 0 ? at.points / static_cast<double>(at.scan_points) : 0;
 }
 
-/// Whether a finer level's result is a better place of the same maximum: near, seen by most of the
-/// points that the scored level sees, and no worse there.
-bool refines(
-  const NewtonResult & fine, const MapView & map, const NewtonResult & scored,
-  const Derivatives & at) {
+/// Whether a finer level's result may be a better place of the same maximum: near, and seen by most
+/// of the points that the scored level sees.
+bool may_refine(const NewtonResult & fine, const MapView & map, const NewtonResult & scored) {
   return fine.outcome == Outcome::converged &&
          apart_m(fine.pose, scored.pose) <= polish_voxels * map.header->voxel_size_m &&
-         share_of(fine.at) >= polish_points_share * share_of(scored.at) &&
-         at.score >= polish_score_share * scored.at.score;
+         share_of(fine.at) >= polish_points_share * share_of(scored.at);
 }
 
 bool is_concave(const Matrix6 & hessian) {
@@ -75,8 +72,7 @@ class Steps {
 public:
   Steps(const Descent & levels, Problem & problem, const EvaluateProblem & evaluate)
   : levels_(levels), problem_(problem), evaluate_(evaluate), whole_(problem.scan) {
-    const bool is_thinned = scored_ > 0 && levels.polishing > 0;
-    few_ = is_thinned ? thinned(whole_, approach_points) : whole_;
+    few_ = levels.polishing > 0 ? thinned(whole_, approach_points) : whole_;
   }
 
   NewtonResult from(const Pose6 & guess) {
@@ -139,7 +135,7 @@ private:
 
   /// Refines the scored level's result: on the finer levels, else with all points on this one.
   void finish(NewtonResult & result) {
-    const bool is_thinned = few_.step > 1;
+    const bool is_thinned = few_.is_thinned();
     bool is_polished = false;
     for (size_t i = scored_ + 1; i < levels_.maps.size() && polish(i, result); ++i) {
       is_polished = true;
@@ -158,13 +154,14 @@ private:
     if (result.outcome != Outcome::converged) {
       return false;
     }
+    const MapView & map = levels_.maps[level];
     NewtonResult fine = tried(level, few_, result.pose);
-    Derivatives there = score(few_, fine.pose);
-    if (few_.step > 1 && refines(fine, levels_.maps[level], result, there)) {
-      fine = with_all(level, fine);
-      there = score(few_, fine.pose);
+    if (!may_refine(fine, map, result)) {
+      return false;
     }
-    if (!refines(fine, levels_.maps[level], result, there)) {
+    fine = with_all(level, fine);
+    const Derivatives there = score(few_, fine.pose);
+    if (!may_refine(fine, map, result) || !(there.score >= polish_score_share * result.at.score)) {
       return false;
     }
     add_steps(fine, path_);
@@ -176,7 +173,7 @@ private:
   /// Moves what few points found to the maximum of all. If that is near, one step of Newton's is
   /// enough: its error is quadratic.
   NewtonResult with_all(size_t level, const NewtonResult & found) {
-    if (few_.step == 1 || found.outcome != Outcome::converged) {
+    if (!few_.is_thinned() || found.outcome != Outcome::converged) {
       return found;
     }
     problem_.map = levels_.maps[level];
