@@ -173,7 +173,7 @@ def looked_again(case: Case, shares: Shares) -> Case:
     def explained(found: Alignment) -> Case:
         return replace(case, alignment=world.matcher.explained(found, scan))
 
-    if case.judged(shares).is_score_low or case.alignment.is_degenerate:
+    if case.judged(shares).is_score_low or not case.alignment.converged:
         for closer in world.matcher.closer_looks(scan, case.guess, only_pose=True):
             if (looked := explained(closer)).judged(shares).is_believed:
                 return looked

@@ -201,9 +201,7 @@ class Matcher:
             return True
         own = self._require_map().own_likelihood
         fits = alignment.fit > CONVINCING_SHARE * own
-        return not alignment.is_degenerate and (
-            fits or alignment.explained_score > EXPLAINED_SHARE * own
-        )
+        return alignment.converged and (fits or alignment.explained_score > EXPLAINED_SHARE * own)
 
     def _looked(self, asked: Question) -> Alignment:
         """Return the first result that convinces of those tried in turn, else the best fit."""

@@ -233,7 +233,7 @@ class PoseJudge:
 
 def why_unusable(alignment: Alignment) -> str:
     """Return why a pose is refused whatever its score; "" if it is not."""
-    if alignment.is_degenerate:
+    if not alignment.converged:
         return f"no convergence: {alignment.why}"
     if alignment.share_in_map < MIN_SHARE_IN_MAP:
         return f"only {100 * alignment.share_in_map:.0f} % of the points lie in the map"

@@ -80,9 +80,9 @@ class Looks:
         return None
 
     def _closer(self, scan: ScanAt, first: Looked) -> Looked | None:
-        """Align to the finest level alone if the score refuses the pose or has no maximum."""
+        """Align to the finest level alone if the score refuses the pose or it is no maximum."""
         before, verdict = first
-        if not (verdict.is_score_low or before.is_degenerate):
+        if not (verdict.is_score_low or not before.converged):
             return None
         start = scan.guess if verdict.expected is None else verdict.expected.poses[0]
         for closer in self._matcher.closer_looks(scan.points, start, scan.regularization):

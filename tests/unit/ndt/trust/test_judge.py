@@ -63,6 +63,14 @@ def test_a_score_below_the_level_of_map_or_drive_is_refused():
     assert "level" in fresh.judge(0.0, aligned(at(0.0), 1.9), at(0.0)).why
 
 
+def test_a_pose_still_moving_is_refused_however_well_it_fits():
+    judge, stamp_s, x = driven()
+    moving = replace(aligned(at(x)), converged=False, why="still moving")
+    explained = replace(moving, explained_score=OWN_SCORE)
+    for alignment in (moving, explained):
+        assert "still moving" in judge.judge(stamp_s, alignment, at(x)).why
+
+
 def test_the_level_follows_a_place_of_lower_scores_but_not_below_the_maps():
     judge, stamp_s, x = driven(1)
     score, refused = OWN_SCORE, ""
