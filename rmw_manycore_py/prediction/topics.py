@@ -78,7 +78,8 @@ class Subscription:
         log.add(now, Kind.HINT, self.endpoint, message.number, message.publisher.endpoint)
         queue = self.queue
         if len(queue) >= self.depth:
-            queue.popleft().publisher.released(message)
+            oldest = queue.popleft()
+            oldest.publisher.released(oldest)
             self.lost += 1
             log.add(now, Kind.LOST, self.endpoint, 0, 1)
         queue.append(message)

@@ -153,6 +153,15 @@ def test_readers_on_one_cpu_run_in_the_order_of_their_notification(
     assert waits_ms[other] > 0.9  # the sink's callback takes 1 ms, a slice is 2.8 ms
 
 
+def test_messages_that_a_full_queue_drops_leave_the_topic_dsm() -> None:
+    """The filter takes 150 ms for an image of 1000 bytes each 100 ms, and has a queue for two."""
+    camera, _, sink = pipeline().callbacks
+    slow = callback(1, 150, trigger="/image", subscription=0, publishes=publishes(1, 20))
+    prediction = run(pipeline(callbacks=(camera, slow, sink)))
+    assert prediction.lost > 20
+    assert prediction.smem_bytes[1] <= 6_000
+
+
 def test_what_follows_a_callback_is_load_and_delays_the_next_one() -> None:
     """The sink has 100 ms for a message: it keeps up with a rest of 90 ms, not with 110."""
     loads, lost = [], []
