@@ -46,6 +46,9 @@ class LivePlatform(Protocol):
         """Call the functions that await an arrival."""
 
 
+_ROUNDING_NS = 0.5  # of a due time to which the time until then was added
+
+
 @dataclass(eq=False)
 class LiveThread:
     """What a thread does is real, how long it takes is drawn from the profile.
@@ -73,7 +76,7 @@ class LiveThread:
         env = self.live.env
 
         def is_early() -> bool:
-            return env.now < due_ns and self.live.is_all_under_way(self.placed)
+            return env.now < due_ns - _ROUNDING_NS and self.live.is_all_under_way(self.placed)
 
         if is_early() and due_ns < inf:
             after(env, due_ns - env.now, lambda _: self.live.look_again(self.placed))
