@@ -72,7 +72,10 @@ class History:
         self._times.append(time_s)
         loads, graph = look.loads, look.graph
         queued, capacity = loads.fullest
-        fill = np.where(capacity > 0, 100 * queued / np.maximum(capacity, 1), np.nan)
+        # A trace does not tell how much any queue holds.
+        fill = 100 * queued / np.maximum(capacity, 1)
+        if not capacity.any():
+            fill = np.full(len(fill), np.nan)
         topics = np.array([loads.rates_hz, loads.bytes_per_s, fill], dtype=np.float32)
         self.topics.append(row, graph.topics, topics)
         cpu = [100 * loads.cpu_share(member.pid) for member in graph.members]

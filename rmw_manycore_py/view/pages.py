@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import re
 from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from rmw_manycore_py.view.shown import Shown
 
 PAGE = Path(__file__).parent / "page"
 MAX_REQUEST_BYTES = 4096
+_STEP = re.compile(r"\d{1,4}", re.ASCII)
 
 
 class Pages:
@@ -55,7 +57,7 @@ class Pages:
     async def picture(self, request: web.Request) -> web.StreamResponse:
         """Send the current picture as a standalone SVG, or that of a step of a trace."""
         shown = self._shown_to_page()
-        if (step := request.query.get("step", "")).isdecimal():
+        if _STEP.fullmatch(step := request.query.get("step", "")):
             shown.seek(int(step))
         if shown.chip is None:
             return problem(404, shown.state)

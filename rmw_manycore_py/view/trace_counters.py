@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -79,10 +79,11 @@ class TraceCounters:
         self._counters = tuple(self._counters_of(trace))
         self._cpu_ns = {process.pid: _course_of(process, Kind.CPU) for process in trace.processes}
         self._used_bytes = _smem_of(trace)
-        self._receives = {
-            process.cluster: (process.pid, _events_of(process, Kind.RECEIVE)["time_ns"])
-            for process in trace.processes
-            if process.is_receive_thread
+        receivers = [process for process in trace.processes if process.is_receive_thread]
+        self._receivers = {process.cluster: process.pid for process in receivers}
+        self._received_ns = {
+            cluster: _times_of([one for one in receivers if one.cluster == cluster], Kind.RECEIVE)
+            for cluster in self._receivers
         }
         clusters = {process.cluster for process in trace.processes}
         self._clusters = sorted(clusters | self._used_bytes.keys())
@@ -100,10 +101,14 @@ class TraceCounters:
         return Sample(time_s, self._graph, clusters, counts, cpu_ns)
 
     def _cluster(self, number: int, time_ns: int) -> TracedCluster:
-        pid, received_ns = self._receives.get(number, (0, np.empty(0, np.int64)))
         used = self._used_bytes.get(number)
-        messages = int(np.searchsorted(received_ns, time_ns, side="right"))
-        return TracedCluster(number, used.at(time_ns) if used else 0, pid, messages)
+        received_ns = self._received_ns.get(number, np.empty(0, np.int64))
+        return TracedCluster(
+            number,
+            used.at(time_ns) if used else 0,
+            self._receivers.get(number, 0),
+            int(np.searchsorted(received_ns, time_ns, side="right")),
+        )
 
     def _counters_of(self, trace: Trace) -> Iterator[_Counter]:
         threads = list(trace.threads())
@@ -128,12 +133,14 @@ class TraceCounters:
         return _Counter(column, events["time_ns"][is_known], rows[is_known], own)
 
 
-def _events_of(process: Process, kind: Kind) -> Events:
-    return merged([(process, thread) for thread in process.threads], (kind,))
+def _times_of(processes: Sequence[Process], kind: Kind) -> NDArray[np.int64]:
+    threads = [(process, thread) for process in processes for thread in process.threads]
+    times_ns: NDArray[np.int64] = merged(threads, (kind,))["time_ns"]
+    return times_ns
 
 
 def _course_of(process: Process, kind: Kind) -> _Course:
-    events = _events_of(process, kind)
+    events = merged([(process, thread) for thread in process.threads], (kind,))
     return _Course(events["time_ns"], events["value"].astype(np.int64))
 
 

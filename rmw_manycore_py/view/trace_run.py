@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A run in a trace, real or simulated, looked at as a running platform is."""
+"""Looks, history and events of a trace of a real or simulated run."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class TraceRun:
         return Look(Loads(before, after), (), {}, (), self._latencies, None, None)
 
     def _watch(self) -> None:
-        """Fill history and events like a viewer that looked on."""
+        """Fill history and events, as a viewer of the running platform would have."""
         losses = Losses()
         samples = deque([self._sample(0)], maxlen=self._window + 1)
         for step in range(LENGTH):

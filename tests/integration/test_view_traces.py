@@ -78,10 +78,19 @@ def test_a_real_run_is_seen_above_a_simulated_one(
     browser.wait_for_text("#details-title", "/filter")
     browser.wait_for_text("#details-facts", "not there")
     browser.click("#play")
+    browser.until(lambda: browser.text("#moment-text") != "0.00 s", "it plays")
+    browser.driver.switch_to.parent_frame()
+    browser.driver.switch_to.frame(below)
+    browser.click("#whole")
+    browser.driver.switch_to.parent_frame()
+    browser.driver.switch_to.frame(above)
+    browser.wait_for_text("#moment-text", "the whole run")
+    assert browser.text("#play") == "Play"  # what was chosen below has ended it
+    browser.click("#play")
     browser.until(lambda: browser.text("#play") == "Play", "it has played to the end")
     browser.driver.switch_to.parent_frame()
     browser.driver.switch_to.frame(below)
-    browser.until(lambda: browser.text("#moment-text") != "0.00 s", "it has followed")
+    browser.until(lambda: browser.text("#moment-text") != "the whole run", "it has followed")
     assert browser.complaints() == []
     assert program.stop() == 0, program
 

@@ -41,8 +41,8 @@ DEFAULT_PORT = 8642
     "files",
     multiple=True,
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Show a saved trace in place of the platform, of a real or a simulated run; "
-    "several: the first above the others.",
+    help="Show a saved trace of a real or simulated run, not the platform. "
+    "Repeat it to show several, one above another.",
 )
 @number_option(
     "--port", within=(0, 65535), default=DEFAULT_PORT, help="Port on 127.0.0.1; 0 picks a free one."

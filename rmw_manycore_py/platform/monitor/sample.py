@@ -36,7 +36,7 @@ _WORDS = 14
 
 
 class ClusterCounters(Protocol):
-    """What is known of a cluster."""
+    """Counters of a cluster, read from a platform or a trace."""
 
     @property
     def id(self) -> int:
@@ -48,7 +48,7 @@ class ClusterCounters(Protocol):
 
     @property
     def used_bytes(self) -> int:
-        """Of its SMEM."""
+        """Bytes of its SMEM in use."""
 
     @property
     def alive(self) -> bool:

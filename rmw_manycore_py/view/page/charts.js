@@ -134,7 +134,7 @@ export class Charts {
     const options = {
       ...this.size(),
       legend: { show: names.length > 1, live: false },
-      cursor: { y: false },
+      cursor: { y: false, drag: { x: this.onPick === null } },
       axes: [{ ...axis, size: 24, values: undefined }, axis],
       scales: { x: { time: this.onPick === null }, y: this.fromZero ? { range: withZero } : {} },
       series: [{}, ...names.map((label, index) => (
@@ -143,6 +143,7 @@ export class Charts {
     };
     const plot = new uPlot(options, this.data(names), figure);
     plot.root.setAttribute("aria-hidden", "true"); // curves and legend; the values are in `latest`
+    plot.over.addEventListener("mouseleave", () => this.tell());
     plot.over.addEventListener("click", () => this.onPick?.(plot.posToVal(plot.cursor.left, "x")));
     return [plot, names, latest];
   }

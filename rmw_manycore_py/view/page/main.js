@@ -126,7 +126,7 @@ function showMoment(position) {
     [charts, details.charts].forEach((one) => one.beOfTrace((seconds) => timeline.byHand(seconds)));
     trace.showChains();
     others = new BroadcastChannel(location.pathname.split("/")[1]); // those of this server
-    others.onmessage = ({ data }) => ("choice" in data ? take(data.choice, false) : timeline.seek(data.seconds));
+    others.onmessage = ({ data }) => ("choice" in data ? take(data.choice, false) : timeline.follow(data.seconds));
   }
   timeline.show(position);
   const seconds = position.step === null ? null : timeline.secondsOf(position.step);
@@ -148,6 +148,9 @@ function connect() {
     forgetHappened(); // the server tells all of it again
     if (selected !== null) {
       send({ select: selected });
+    }
+    if (isOfTrace) {
+      send({ seek: timeline.wanted }); // the server begins with the whole run
     }
   };
   live.onmessage = (message) => show(JSON.parse(message.data));

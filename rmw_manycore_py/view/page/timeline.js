@@ -32,7 +32,9 @@ export class Timeline {
       this.place.hidden = false;
       this.moment.max = steps;
     }
-    this.moment.value = step ?? steps;
+    if (step === this.wanted || !this.moment.matches(":active")) {
+      this.moment.value = step ?? steps; // else the thumb would jump back under the pointer
+    }
     this.text.textContent = step === null ? "the whole run" : `${this.secondsOf(step).toFixed(2)} s`;
     this.picture.href = step === null ? "chip.svg" : `chip.svg?step=${step}`;
     this.isAsking = false;
@@ -43,6 +45,12 @@ export class Timeline {
 
   secondsOf(step) {
     return this.length.seconds * step / this.length.steps;
+  }
+
+  // What was chosen on the page of another trace.
+  follow(seconds) {
+    this.pause();
+    this.seek(seconds);
   }
 
   // seconds since the begin; null: the whole run

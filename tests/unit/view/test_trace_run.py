@@ -92,6 +92,19 @@ def test_a_restarted_node_is_one_node() -> None:
     assert np.array_equal(once.whole.loads.after.counts, twice.whole.loads.after.counts)
 
 
+def test_a_restarted_receive_thread_goes_on_counting() -> None:
+    trace = example(rounds=8)
+    *others, told = trace.processes
+    (thread,) = told.threads
+    parts = [
+        replace(told, pid=pid, threads=(Thread(pid, "receive", events, 0),))
+        for pid, events in ((81, thread.events[:8]), (82, thread.events[8:]))
+    ]
+    runs = TraceRun(trace, "a"), TraceRun(replace(trace, processes=(*others, *parts)), "b")
+    counts = [{one.id: one.messages for one in run.whole.loads.after.clusters} for run in runs]
+    assert counts[0] == counts[1] == {1: 0, 2: 8, 3: 0}
+
+
 def test_losses_are_events_with_their_times() -> None:
     trace = example(rounds=8)
     *others, sink, told = trace.processes
