@@ -15,10 +15,7 @@ trap 'kill -INT $view $run 2>/dev/null || true; wait $view $run' EXIT
 manycore topic echo --once --no-arr $topic sensor_msgs/msg/Image >/dev/null
 manycore view --once --period 3 -o "$1"
 echo "wrote $1"
-if ! command -v chromium >/dev/null || ! command -v chromedriver >/dev/null; then
-  echo "$2 is unchanged; to draw it: apt-get install chromium chromium-driver"
-  exit
-fi
+require_chromium "$2"
 start_view
 python scripts/page_picture.py "$link" $topic "$2"
 echo "wrote $2"

@@ -5,10 +5,7 @@
 # scripts/scan_picture.sh SCAN.png
 set -eu
 . "$(dirname "$0")/start_view.sh"
-if ! command -v chromium >/dev/null || ! command -v chromedriver >/dev/null; then
-  echo "$1 is unchanged; to draw it: apt-get install chromium chromium-driver"
-  exit
-fi
+require_chromium "$1"
 export MANYCORE_PLATFORM="picture-$$"
 export ROS_DOMAIN_ID=$((1 + $$ % 100))
 manycore ndt simulate build/picture-street --length 160 --beams 64 >/dev/null 2>&1

@@ -19,3 +19,10 @@ start_view() {
     sleep 0.1
   done
 }
+
+# Ends the script, without an error, if there is no Chromium that draws this picture.
+require_chromium() { # require_chromium PICTURE
+  command -v chromium >/dev/null && command -v chromedriver >/dev/null && return
+  echo "$1 is unchanged; to draw it: apt-get install chromium chromium-driver"
+  exit
+}

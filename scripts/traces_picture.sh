@@ -5,10 +5,7 @@
 # scripts/traces_picture.sh TRACES.png
 set -eu
 . "$(dirname "$0")/start_view.sh"
-if ! command -v chromium >/dev/null || ! command -v chromedriver >/dev/null; then
-  echo "$1 is unchanged; to draw it: apt-get install chromium chromium-driver"
-  exit
-fi
+require_chromium "$1"
 export MANYCORE_PLATFORM="picture-$$"
 profile=build/picture.profile.json
 manycore profile record image_pipeline --duration 10 -o $profile >build/picture.log
