@@ -116,21 +116,25 @@ class TraceCounters:
         written = (endpoint_ids(writes), writes["number"])
         taken = first_of(written, (endpoint_in(claims["value"]), claims["number"]))
         sizes = np.append(writes["value"], 0)[taken]  # of messages from before the trace: 0
-        ones = np.ones(max(trace.event_count, 1))
-        yield self._counter(MESSAGES, writes, ones)
+        yield self._counter(MESSAGES, writes)
         yield self._counter(BYTES, writes, writes["value"])
-        yield self._counter(MESSAGES, claims, ones)
+        yield self._counter(MESSAGES, claims)
         yield self._counter(BYTES, claims, sizes)
         for kind, column, is_number in _OTHERS:
             events = merged(threads, (kind,))
-            yield self._counter(column, events, events["value"] if is_number else ones)
+            yield self._counter(column, events, events["value"] if is_number else None)
 
-    def _counter(self, column: int, events: Events, values: NDArray[np.generic]) -> _Counter:
-        """Return a counter of the events whose endpoints have names."""
+    def _counter(
+        self, column: int, events: Events, values: NDArray[np.generic] | None = None
+    ) -> _Counter:
+        """Return a counter of the events whose endpoints have names.
+
+        :param values: what each event adds; None: 1.
+        """
         rows = np.array([self._rows.get(one, -1) for one in endpoint_ids(events).tolist()], np.intp)
         is_known = rows >= 0
-        own = values[: len(events)][is_known].astype(np.float64)
-        return _Counter(column, events["time_ns"][is_known], rows[is_known], own)
+        added = np.ones(len(events)) if values is None else values.astype(np.float64)
+        return _Counter(column, events["time_ns"][is_known], rows[is_known], added[is_known])
 
 
 def _times_of(processes: Sequence[Process], kind: Kind) -> NDArray[np.int64]:

@@ -56,12 +56,15 @@ def test_a_real_run_is_seen_above_a_simulated_one(
     above, below = browser.all("iframe")
     assert above.location["y"] < below.location["y"]
 
-    browser.driver.switch_to.frame(above)
+    def go_to(page: object) -> None:
+        browser.driver.switch_to.default_content()
+        browser.driver.switch_to.frame(page)
+
+    go_to(above)
     browser.wait_for_text("#state", "measured.csv")
     browser.wait_for_text("#chains", "communication /chatter")
     browser.find("[data-node='/talker']")
-    browser.driver.switch_to.parent_frame()
-    browser.driver.switch_to.frame(below)
+    go_to(below)
     browser.wait_for_text("#state", "simulated.json")
     browser.wait_for_text("#chains", "communication /image")
     browser.wait_for_text("#moment-text", "the whole run")
@@ -72,24 +75,20 @@ def test_a_real_run_is_seen_above_a_simulated_one(
     browser.wait_for_text("#moment-text", "0.00 s")
     browser.wait_for_text("#details-facts", "CPU 0 %")
 
-    browser.driver.switch_to.parent_frame()
-    browser.driver.switch_to.frame(above)
+    go_to(above)
     browser.wait_for_text("#moment-text", "0.00 s")
     browser.wait_for_text("#details-title", "/filter")
     browser.wait_for_text("#details-facts", "not there")
     browser.click("#play")
     browser.until(lambda: browser.text("#moment-text") != "0.00 s", "it plays")
-    browser.driver.switch_to.parent_frame()
-    browser.driver.switch_to.frame(below)
+    go_to(below)
     browser.click("#whole")
-    browser.driver.switch_to.parent_frame()
-    browser.driver.switch_to.frame(above)
+    go_to(above)
     browser.wait_for_text("#moment-text", "the whole run")
     assert browser.text("#play") == "Play"  # what was chosen below has ended it
     browser.click("#play")
     browser.until(lambda: browser.text("#play") == "Play", "it has played to the end")
-    browser.driver.switch_to.parent_frame()
-    browser.driver.switch_to.frame(below)
+    go_to(below)
     browser.until(lambda: browser.text("#moment-text") != "the whole run", "it has followed")
     assert browser.complaints() == []
     assert program.stop() == 0, program
