@@ -45,26 +45,27 @@ Vector3 mean_of(const VoxelLine & line) {
     static_cast<double>(line.mean_m[2])};
 }
 
-int32_t cell_along(const MapHeader & map, double place_m, size_t axis) {
-  constexpr double far = 1e9;  // outside of any map, and its difference to a cell fits
-  const double cell = std::clamp(std::floor(place_m / map.voxel_size_m), -far, far);
-  return static_cast<int32_t>(cell) - map.first_cell[axis];
-}
-
-/// Whether a voxel may be that of a cell, give or take rounding: most in range of it are not.
-bool is_near(const MapHeader & map, const VoxelLine & voxel, const Cell & cell) {
-  constexpr double half_cells = 0.6;
+/// A place in voxels from the corner of the map's first cell.
+Vector3 in_cells(const MapHeader & map, const Vector3 & place_m) {
+  Vector3 place = place_m;
   for (size_t i = 0; i < 3; ++i) {
-    const double middle_m = (cell[i] + map.first_cell[i] + 0.5) * map.voxel_size_m;
-    const double away_m = std::abs(static_cast<double>(voxel.mean_m[i]) - middle_m);
-    if (away_m > half_cells * map.voxel_size_m) {
-      return false;
-    }
+    place[i] = place[i] / map.voxel_size_m - map.first_cell[i];
   }
-  return true;
+  return place;
 }
 
-/// The voxel of the cell itself among those in range of it; null without one.
+/// The cell of a place. Just before the first cell it is the first: that is at the border of the
+/// map, where no voxels are.
+Cell cell_of(const Vector3 & place) {
+  constexpr double far = 1e9;  // outside of any map
+  Cell cell;
+  for (size_t i = 0; i < 3; ++i) {
+    cell[i] = static_cast<int32_t>(std::clamp(place[i], -far, far));
+  }
+  return cell;
+}
+
+/// The voxel of the cell itself, the first of those in range of it; null without one.
 const VoxelLine * own_voxel(const MapView & map, const Cell & cell) {
   const MapHeader & header = *map.header;
   uint32_t key = 0;
@@ -74,29 +75,43 @@ const VoxelLine * own_voxel(const MapView & map, const Cell & cell) {
     }
     key = key * static_cast<uint32_t>(header.cells[i]) + static_cast<uint32_t>(cell[i]);
   }
-  for (const uint32_t * line = map.lists + find_list(map, key); *line != 0; ++line) {
-    const VoxelLine & voxel = map.lines[*line];
-    bool is_own = is_near(header, voxel, cell);
-    for (size_t i = 0; i < 3 && is_own; ++i) {
-      is_own = cell_along(header, static_cast<double>(voxel.mean_m[i]), i) == cell[i];
-    }
-    if (is_own) {
-      return &voxel;
-    }
-  }
-  return nullptr;
+  const uint32_t line = map.lists[find_list(map, key)];
+  const VoxelLine & voxel = map.lines[line];
+  return line != 0 && cell_of(in_cells(header, mean_of(voxel))) == cell ? &voxel : nullptr;
 }
 
-/// The lowest voxels of columns, each looked up once.
+/// A column of the map.
+struct Column {
+  float lowest_m;  ///< height of the lowest voxel's mean, relative to the map's origin; NaN without
+  float around;    ///< columns with voxels among the eight around it
+};
+
+/// Columns of the map, each looked at once.
 class Columns {
 public:
   explicit Columns(const MapView & map) : map_(map) {}
 
-  /// Height of the lowest voxel's mean, relative to the map's origin; NaN without one.
+  const Column & at(int32_t x, int32_t y) {
+    const auto [entry, is_new] = columns_.try_emplace(key_of(x, y));
+    if (is_new) {
+      entry->second.lowest_m = lowest_m(x, y);
+      for (int32_t i = -1; i <= 1; ++i) {
+        for (int32_t j = -1; j <= 1; ++j) {
+          const bool is_beside = i != 0 || j != 0;
+          entry->second.around += is_beside && !std::isnan(lowest_m(x + i, y + j)) ? 1.0F : 0.0F;
+        }
+      }
+    }
+    return entry->second;
+  }
+
+private:
+  static uint64_t key_of(int32_t x, int32_t y) {
+    return (static_cast<uint64_t>(static_cast<uint32_t>(x)) << 32) | static_cast<uint32_t>(y);
+  }
+
   float lowest_m(int32_t x, int32_t y) {
-    const uint64_t key =
-      (static_cast<uint64_t>(static_cast<uint32_t>(x)) << 32) | static_cast<uint32_t>(y);
-    const auto [entry, is_new] = lowest_m_.try_emplace(key, std::nanf(""));
+    const auto [entry, is_new] = lowest_m_.try_emplace(key_of(x, y), std::nanf(""));
     for (int32_t z = 0; is_new && std::isnan(entry->second) && z < map_.header->cells[2]; ++z) {
       if (const VoxelLine * const voxel = own_voxel(map_, {x, y, z})) {
         entry->second = voxel->mean_m[2];
@@ -105,18 +120,8 @@ public:
     return entry->second;
   }
 
-  int known_around(int32_t x, int32_t y) {
-    int known = 0;
-    for (int32_t i = -1; i <= 1; ++i) {
-      for (int32_t j = -1; j <= 1; ++j) {
-        known += (i != 0 || j != 0) && !std::isnan(lowest_m(x + i, y + j)) ? 1 : 0;
-      }
-    }
-    return known;
-  }
-
-private:
   const MapView & map_;
+  std::unordered_map<uint64_t, Column> columns_;
   std::unordered_map<uint64_t, float> lowest_m_;
 };
 
@@ -181,14 +186,14 @@ bool is_past_map(const MapView & map, const Vector3 & from_m, const Vector3 & to
   const double steps =
     std::floor(std::sqrt(dot(ray, ray)) * steps_per_voxel / map.header->voxel_size_m);
   const auto [first, last_share] = part_in_map(*map.header, from_m, ray);
+  const Vector3 begin = in_cells(*map.header, from_m);
+  const double per_step = 1 / (steps * map.header->voxel_size_m);
   const double end = std::min(std::ceil(last_share * steps) + 1, steps);
   Cell last = {-1, -1, -1};
   for (double step = std::max(std::floor(first * steps), 1.0); step < end; ++step) {
-    Cell cell;
-    for (size_t i = 0; i < 3; ++i) {
-      const double place_m = from_m[i] + ray[i] * step / steps;
-      cell[i] = cell_along(*map.header, place_m, i);
-    }
+    const double part = step * per_step;
+    const Cell cell =
+      cell_of({begin[0] + ray[0] * part, begin[1] + ray[1] * part, begin[2] + ray[2] * part});
     if (cell == last) {
       continue;
     }
@@ -226,11 +231,10 @@ void point_evidence(
       evidence[point] = {std::nanf(""), std::nanf(""), 0, 0};
       continue;
     }
-    const int32_t x = cell_along(*map.header, place_m[0], 0);
-    const int32_t y = cell_along(*map.header, place_m[1], 1);
+    const Cell cell = cell_of(in_cells(*map.header, place_m));
+    const Column & column = columns.at(cell[0], cell[1]);
     evidence[point] = {
-      scores[point], static_cast<float>(place_m[2]) - columns.lowest_m(x, y),
-      static_cast<float>(columns.known_around(x, y)),
+      scores[point], static_cast<float>(place_m[2]) - column.lowest_m, column.around,
       is_past_map(map, from_m, place_m) ? 1.0F : 0.0F};
   }
 }

@@ -9,6 +9,9 @@
 namespace manycore::ndt {
 namespace {
 
+/// Sorts the voxels around a cell behind the one in it.
+constexpr uint32_t behind_own = 1U << 31;
+
 std::vector<Cell> offsets_of(Search search) {
   std::vector<Cell> offsets;
   for (int32_t z = -1; z <= 1; ++z) {
@@ -50,7 +53,8 @@ NeighbourLists neighbour_lists(
         cell[axis] += offset[axis];
       }
       if (search != Search::radius || is_in_reach(grid, voxels[i], cell)) {
-        seen.emplace_back(grid.key_of(cell), static_cast<uint32_t>(i + 1));
+        const uint32_t order = cell == voxels[i].cell ? 0 : behind_own;
+        seen.emplace_back(grid.key_of(cell), order | static_cast<uint32_t>(i + 1));
       }
     }
   }
@@ -65,7 +69,7 @@ NeighbourLists neighbour_lists(
       }
       out.cells.push_back({key, static_cast<uint32_t>(out.lists.size())});
     }
-    out.lists.push_back(line);
+    out.lists.push_back(line & ~behind_own);
   }
   out.lists.push_back(0);
   return out;

@@ -13,7 +13,7 @@ namespace manycore::ndt {
 /// For each cell with voxels in range, the lines of these voxels.
 struct NeighbourLists {
   std::vector<TableSlot> cells;  ///< key and first list index of each cell
-  std::vector<uint32_t> lists;   ///< lines in ascending order; each list ends with 0
+  std::vector<uint32_t> lists;   ///< the cell's own line first; each list ends with 0
 };
 
 /// A voxel and its cell.

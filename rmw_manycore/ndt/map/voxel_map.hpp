@@ -32,7 +32,7 @@ constexpr uint32_t empty_list = 0;
 /// Head of a voxel map in shared memory.
 struct MapHeader {
   static constexpr uint64_t magic_value = 0x70616d7464636d72;
-  static constexpr uint32_t layout_version = 1;
+  static constexpr uint32_t layout_version = 2;
   uint64_t magic;
   uint32_t version;
   Search search;
@@ -56,7 +56,7 @@ static_assert(std::is_trivially_copyable_v<MapHeader>);
 struct MapView {
   const MapHeader * header;
   const TableSlot * table;
-  const uint32_t * lists;   ///< voxel lines per cell, each list ended by 0
+  const uint32_t * lists;   ///< voxel lines per cell, its own first; each list ends with 0
   const VoxelLine * lines;  ///< line 0 means "no voxel"
 };
 

@@ -10,12 +10,16 @@
 namespace manycore::ndt {
 namespace {
 
-/// Convergence threshold of coarse levels, as a fraction of the voxel size: the next finer level
-/// converges from anywhere within a voxel.
+/// Convergence threshold, as a fraction of the voxel size, where something follows that converges
+/// from anywhere within a voxel: a finer level, or more points.
 constexpr double coarse_epsilon_voxels = 0.025;
 /// Points that approach a maximum; a scan of twice as many is thinned for that. Where vehicles hide
 /// 40 % of the scan, 2,048 found the right place in fewer scans than all points, 4,096 in as many.
 constexpr size_t approach_points = 4096;
+/// Points that take the first steps on the scored level, and the threshold that ends these. On
+/// coarse levels so few lead astray where half of the map is missing.
+constexpr size_t first_points = 1024;
+constexpr double first_epsilon_voxels = 0.05;
 /// Longest step (m, rad) to the maximum of all points that is taken without looking again.
 constexpr double last_step_limit = 0.05;
 /// Steps of all points where that is farther; more are taken at wrong places only.
@@ -27,15 +31,6 @@ constexpr double polish_voxels = 0.3;
 constexpr double polish_points_share = 0.6;
 /// Minimum score of a polished pose on the scored level, whose maximum is lower than its own.
 constexpr double polish_score_share = 0.97;
-
-MatchOptions options_of(const MatchOptions & options, const MapView & level, bool is_last) {
-  MatchOptions out = options;
-  if (!is_last) {
-    const double epsilon_m = coarse_epsilon_voxels * level.header->voxel_size_m;
-    out.trans_epsilon = std::max(options.trans_epsilon, epsilon_m);
-  }
-  return out;
-}
 
 /// Adds the steps of one level to those of all.
 void add_steps(const NewtonResult & level, Path & path) {
@@ -66,13 +61,14 @@ bool is_concave(const Matrix6 & hessian) {
   return std::all_of(values.begin(), values.end(), [](double value) { return value < 0; });
 }
 
-/// An alignment from level to level. Few points approach the maximum of the scored level; all of
-/// them only refine the pose.
+/// An alignment from level to level. Few points, on the scored level fewer ones first, approach the
+/// maximum of that level; all of them only refine the pose.
 class Steps {
 public:
   Steps(const Descent & levels, Problem & problem, const EvaluateProblem & evaluate)
   : levels_(levels), problem_(problem), evaluate_(evaluate), whole_(problem.scan) {
     few_ = levels.polishing > 0 ? thinned(whole_, approach_points) : whole_;
+    fewer_ = levels.polishing > 0 ? thinned(whole_, first_points) : whole_;
   }
 
   NewtonResult from(const Pose6 & guess) {
@@ -80,10 +76,10 @@ public:
     NewtonResult result;
     result.pose = guess;
     for (size_t level = 0; level < scored_; ++level) {
-      result = align(level, few_, result.pose);
+      result = align(level, few_, result.pose, coarse_epsilon_voxels);
     }
     if (!is_surpassed(result)) {
-      result = align(scored_, few_, result.pose);
+      result = approach(result.pose);
       const Derivatives first = result.first;
       finish(result);
       result.first = first;
@@ -99,7 +95,7 @@ private:
     if (levels_.surpassed == Levels::no_score) {
       return false;
     }
-    result.at = result.first = score(few_, result.pose);
+    result.at = result.first = score(fewer_, result.pose);
     if (result.at.score > levels_.surpassed) {
       return false;
     }
@@ -107,20 +103,33 @@ private:
     return true;
   }
 
-  /// Aligns to a level, and adds its steps to those of all.
-  NewtonResult align(size_t level, const ScanView & scan, const Pose6 & guess) {
-    const NewtonResult found = tried(level, scan, guess);
+  /// Aligns to the scored level; `first` of the result is that of the first steps.
+  NewtonResult approach(const Pose6 & guess) {
+    const double epsilon_voxels = few_.is_thinned() ? coarse_epsilon_voxels : 0;
+    if (!fewer_.is_thinned()) {
+      return align(scored_, few_, guess, epsilon_voxels);
+    }
+    const NewtonResult near = align(scored_, fewer_, guess, first_epsilon_voxels);
+    NewtonResult found = align(scored_, few_, near.pose, epsilon_voxels);
+    found.first = near.first;
+    return found;
+  }
+
+  /// Aligns to a level, and adds the steps to those of all.
+  NewtonResult align(
+    size_t level, const ScanView & scan, const Pose6 & guess, double epsilon_voxels) {
+    MatchOptions options = problem_.options;
+    const double epsilon_m = epsilon_voxels * levels_.maps[level].header->voxel_size_m;
+    options.trans_epsilon = std::max(options.trans_epsilon, epsilon_m);
+    const NewtonResult found = maximised(level, scan, guess, options);
     add_steps(found, path_);
     return found;
   }
 
-  NewtonResult tried(
-    size_t level, const ScanView & scan, const Pose6 & guess,
-    uint32_t max_iterations = UINT32_MAX) {
+  NewtonResult maximised(
+    size_t level, const ScanView & scan, const Pose6 & guess, const MatchOptions & options) {
     problem_.map = levels_.maps[level];
     problem_.scan = scan;
-    MatchOptions options = options_of(problem_.options, problem_.map, level >= scored_);
-    options.max_iterations = std::min(options.max_iterations, max_iterations);
     const NewtonResult found =
       maximise(guess, options, [&](const Pose6 & pose) { return evaluate_(problem_, pose); });
     iterations_ += found.iterations;
@@ -155,7 +164,7 @@ private:
       return false;
     }
     const MapView & map = levels_.maps[level];
-    NewtonResult fine = tried(level, few_, result.pose);
+    NewtonResult fine = maximised(level, few_, result.pose, problem_.options);
     if (!may_refine(fine, map, result)) {
       return false;
     }
@@ -181,7 +190,9 @@ private:
     const Derivatives at = evaluate_(problem_, found.pose);
     const Vector6 step = newton_step(at.hessian, at.gradient);
     if (!is_concave(at.hessian) || !(norm(step) <= last_step_limit)) {
-      return tried(level, whole_, found.pose, max_last_steps);
+      MatchOptions options = problem_.options;
+      options.max_iterations = std::min(options.max_iterations, max_last_steps);
+      return maximised(level, whole_, found.pose, options);
     }
     ++iterations_;
     NewtonResult out = found;
@@ -197,6 +208,7 @@ private:
   const EvaluateProblem & evaluate_;
   ScanView whole_;
   ScanView few_;
+  ScanView fewer_;
   size_t scored_ = levels_.maps.size() - levels_.polishing - 1;
   uint32_t iterations_ = 0;
   Path path_;

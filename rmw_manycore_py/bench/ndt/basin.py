@@ -30,8 +30,12 @@ DIRECTIONS = 4  # guesses from each scan and distance
 STREETS = ("street 1", "street 2", "street, sparse map")
 SEED = 3
 ERROR_M, ERROR_DEG = 2.0, 10.0  # offset for which errors are reported
-SECOND_LOOK, LEVELS, THREE_LEVELS, ONE_LEVEL = (
-    f"rmw_manycore {words}" for words in ("second look", "4 m, 2 m", "8 m, 4 m, 2 m", "2 m alone")
+SECOND_LOOK, BY_FACES, LEVELS, THREE_LEVELS, ONE_LEVEL = (
+    f"rmw_manycore {words}"
+    for words in (
+        *("second look", "second look, direct7"),
+        *("4 m, 2 m", "8 m, 4 m, 2 m", "2 m alone"),
+    )
 )
 AUTOWARE, ICP = "as Autoware", "Open3D, multi-scale ICP"
 
@@ -87,10 +91,11 @@ def measure(run: Run) -> list[Result]:
     results = []
     with on_cpu(usable()[0]):
         drive = recorded_drive(run.iterations(SCANS))
-        for name in (SECOND_LOOK, LEVELS, THREE_LEVELS, ONE_LEVEL, AUTOWARE, ICP):
+        for name in (SECOND_LOOK, BY_FACES, LEVELS, THREE_LEVELS, ONE_LEVEL, AUTOWARE, ICP):
             results += _results(run, drive, name, OFFSETS)
         for name_of_street in STREETS:
-            contenders = [name for name in (SECOND_LOOK, LEVELS, ICP) if _wants(run, name)]
+            all_of_street = (SECOND_LOOK, BY_FACES, LEVELS, ICP)
+            contenders = [name for name in all_of_street if _wants(run, name)]
             place = street(name_of_street, run.iterations(SCANS)) if contenders else drive
             for name in contenders:
                 results += _results(run, place, name, FAR_OFFSETS)
@@ -170,6 +175,7 @@ def _options() -> dict[str, MatcherOptions]:
     )
     return {
         SECOND_LOOK: base,
+        BY_FACES: replace(base, search="direct7"),
         LEVELS: replace(base, wide_levels=()),
         THREE_LEVELS: replace(base, coarse_levels=(4.0, 2.0), wide_levels=()),
         ONE_LEVEL: replace(base, coarse_levels=()),

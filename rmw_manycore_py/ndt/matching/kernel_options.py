@@ -45,7 +45,7 @@ def polish_options(options: MatcherOptions, factor: float) -> _ndt.MapOptions:
     """
     return _ndt.MapOptions(
         voxel_size_m=factor * options.voxel_size_m,
-        search=options.search,
+        search="direct7",
         covariance="pcl",
         min_points_per_voxel=options.min_points_per_voxel,
         widening_m=0.0,

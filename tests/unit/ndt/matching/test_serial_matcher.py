@@ -52,7 +52,7 @@ def test_a_coarse_level_leads_home_from_far_off() -> None:
     found = cascade.align(SCAN, far)
     assert errors(found.T_map_sensor, TRUE)[0] < 0.06
     nearby = errors(cascade.align(SCAN, GUESS).T_map_sensor, alone.align(SCAN, GUESS).T_map_sensor)
-    assert nearby[0] < 0.005
+    assert nearby[0] < 0.01
     assert cascade.score(SCAN, TRUE) == alone.score(SCAN, TRUE)
 
 
