@@ -160,7 +160,7 @@ class LiveThread:
     def _end(self, then: Then) -> None:
         work = self._work
         if work is None:
-            then()
+            self._run(0.0, then)
             return
         if self._execution is None:
             self._draw(work.demand.next_silent())
