@@ -23,7 +23,7 @@ struct Awaited {
 enum class Step : uint32_t {
   none,
   wait,     ///< its callback has ended
-  woken,    ///< look at what has ended its wait; subject: when it would have ended by itself
+  woken,    ///< look at what has ended its wait
   timer,    ///< call a timer; subject: its period in ns
   take,     ///< take a message; subject: the subscription's slot
   publish,  ///< subject: the publisher's slot
@@ -45,6 +45,8 @@ struct Door {
   void (*end_turn)(bool empty) noexcept;
   /// Lets the time pass that this thread takes on the platform before a step.
   void (*elapse)(Step next, uint64_t subject) noexcept;
+  /// Whether a subscription's messages have arrived on the modelled platform, any of them.
+  bool (*has_arrived)(uint32_t slot, uint32_t incarnation) noexcept;
 };
 
 }  // namespace manycore::virtual_time
@@ -67,6 +69,12 @@ inline void elapse(Step next, uint64_t subject = 0) noexcept {
   if (const Door * const there = door()) {
     there->elapse(next, subject);
   }
+}
+
+/// True where time is the wall clock's.
+inline bool has_arrived(uint32_t slot, uint32_t incarnation) noexcept {
+  const Door * const there = door();
+  return there == nullptr || there->has_arrived(slot, incarnation);
 }
 
 /// To be called before a wait, which is a turn's end also if it finds something ready. `poll`: it

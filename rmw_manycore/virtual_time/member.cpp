@@ -224,6 +224,10 @@ void Member::elapse(Step next, uint64_t subject) noexcept {
   }
 }
 
+bool Member::has_arrived(uint32_t slot, uint32_t incarnation) const noexcept {
+  return page_.under_way[slot].load(std::memory_order_acquire) != incarnation || is_over();
+}
+
 /// Of threads that never wait in the middleware, as executors have them, from the first step on.
 void Member::elapse_by_factor() noexcept {
   if (page_.factor <= 0 || is_over() || !has_joined() || seat_of_this_thread() == nullptr) {

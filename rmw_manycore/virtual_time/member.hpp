@@ -31,6 +31,7 @@ public:
   bool yield(bool empty) noexcept;
   void end_turn(bool empty) noexcept;
   void elapse(Step next, uint64_t subject) noexcept;
+  bool has_arrived(uint32_t slot, uint32_t incarnation) const noexcept;
 
 private:
   Member(SharedMemory memory, uint32_t rank) noexcept;

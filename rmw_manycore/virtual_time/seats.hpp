@@ -14,6 +14,8 @@ namespace manycore::virtual_time {
 constexpr uint64_t page_magic = 0x6d63'7674'696d'6531;
 /// Threads of one run that may wait at a time.
 constexpr uint32_t seat_capacity = 2048;
+/// Subscriptions are in slots below.
+constexpr uint32_t subscription_capacity = 32768;
 /// 2001-09-09: late enough for programs that subtract from it, early enough not to be mistaken.
 constexpr int64_t start_ns = 1'000'000'000 * ns_per_s;
 constexpr int64_t never_ns = INT64_MAX;
@@ -61,6 +63,8 @@ struct Page {
   /// Virtual nanoseconds per nanosecond of CPU time; 0: callbacks take no time.
   double factor;
   uint32_t is_modelled;  ///< callbacks take the time that the platform model predicts
+  /// By slot: incarnation of the subscription whose messages are all under way on the platform.
+  std::atomic<uint32_t> under_way[subscription_capacity];
   alignas(64) Seat seats[seat_capacity];
 
   /// Lets time run at the pace of the wall clock, from the first call on.

@@ -23,13 +23,15 @@ from rmw_manycore_py.prediction.cpu import Task
 from rmw_manycore_py.prediction.events import EventLog
 from rmw_manycore_py.prediction.executors import Work
 from rmw_manycore_py.prediction.live_thread import LiveThread
-from rmw_manycore_py.prediction.simulation import Placed, Simulation
+from rmw_manycore_py.prediction.simulation import Simulation
 from rmw_manycore_py.prediction.sources import Source, Timer
 from rmw_manycore_py.prediction.target import Target
 from rmw_manycore_py.prediction.target_file import target_named
 from rmw_manycore_py.prediction.topics import Message, Publisher, Subscription, after
 from rmw_manycore_py.profile.files import load
 from rmw_manycore_py.profile.model import Callback, Profile
+
+Passage = Callable[[Subscription, bool], None]
 
 _ALIKE = 0.05  # of a period: a timer's, and what the profile measured
 
@@ -44,8 +46,10 @@ class Live(Simulation):
         self._programs = {node.name: node.full_name for node in placement.nodes}
         self._placed = {name: one for one in self.processes for name in one.nodes}
         self._under_way: dict[int, int] = defaultdict(int)  # messages, by subscription
-        self._inputs: dict[Placed | None, list[Subscription]] = defaultdict(list)
-        self._awaiting: dict[Placed | None, list[Callable[[], None]]] = defaultdict(list)
+        self._noted: set[int] = set()  # subscriptions whose messages are all under way
+        self._awaiting: dict[int, list[Callable[[], None]]] = defaultdict(list)
+        self.passage: Passage = lambda *_: None
+        self.look: Callable[[], None] = lambda: None
         self._works: dict[tuple[str, str, bool], Work] = {}
         self._own_publishers = {(one.node, one.topic): one for one in self.publishers}
         for work in self.works.values():
@@ -53,9 +57,7 @@ class Live(Simulation):
             is_topic = callback.kind == "subscription"
             self._works[self._name_of(callback), callback.trigger, is_topic] = work
             if work.subscription is not None:
-                placed = self._placed.get(self._name_of(callback))
-                self._inputs[placed].append(work.subscription)
-                work.subscription.notify = partial(self._arrived, work.subscription, placed)
+                work.subscription.notify = partial(self._arrived, work.subscription)
 
     def _start(self, source: Timer | Source, delay: float) -> None:
         """Leave what happens by itself to the real nodes."""
@@ -116,41 +118,49 @@ class Live(Simulation):
         for far in message.publisher.far.values():
             for subscription in far:
                 self._under_way[subscription.endpoint] += 1
+                self.note(subscription)
         self.delivery.deliver(message, self._log)
 
     def is_under_way(self, work: Work) -> bool:
         """Return whether what a thread is about to take has not arrived on the platform."""
-        one = work.subscription
-        return one is not None and not one.queue and self._under_way[one.endpoint] > 0
+        return work.subscription is not None and self._is_all_under_way(work.subscription)
 
-    def is_all_under_way(self, placed: Placed) -> bool:
-        """Return whether a process has messages to come, and none that has arrived."""
-        inputs = self._inputs[placed]
-        return not any(one.queue for one in inputs) and any(
-            self._under_way[one.endpoint] for one in inputs
-        )
+    def _is_all_under_way(self, one: Subscription) -> bool:
+        return not one.queue and self._under_way[one.endpoint] > 0
 
-    def await_arrival(self, placed: Placed, then: Callable[[], None]) -> None:
-        """Call a function when the next message of a process has come."""
-        self._awaiting[placed].append(then)
+    def await_arrival(self, work: Work, then: Callable[[], None]) -> None:
+        """Call a function when what a thread is about to take has arrived."""
+        assert work.subscription is not None
+        self._awaiting[work.subscription.endpoint].append(then)
 
-    def look_again(self, placed: Placed | None) -> None:
-        """Call the functions that await an arrival."""
-        for then in self._awaiting.pop(placed, ()):
+    def note(self, subscription: Subscription) -> bool:
+        """Report whether all messages of a subscription are under way, if that has changed."""
+        is_under_way = self._is_all_under_way(subscription)
+        if is_under_way == (subscription.endpoint in self._noted):
+            return False
+        self._noted ^= {subscription.endpoint}
+        self.passage(subscription, is_under_way)
+        return True
+
+    def _arrived(self, subscription: Subscription) -> None:
+        """Have threads look at once at what comes from far: what is near, its publisher writes."""
+        is_far = subscription.queue[-1].publisher.cluster != subscription.cluster
+        self._under_way[subscription.endpoint] -= is_far
+        for then in self._awaiting.pop(subscription.endpoint, ()):
             then()
-
-    def _arrived(self, subscription: Subscription, placed: Placed | None) -> None:
-        if subscription.queue[-1].publisher.cluster != subscription.cluster:
-            self._under_way[subscription.endpoint] -= 1
-        self.look_again(placed)
+        if self.note(subscription) and is_far:
+            self.look()
 
 
 class Answers:
     """Answers the timekeeper, in lines.
 
     `ask SEAT TID STEP SUBJECT NODE ROLE PROGRAM`: what a thread does next.
-    `advance NS`: the answer is `NS SEAT TID`, when a thread is done, or `NS`: none is until then.
-    `resume`: that thread has asked, or waits.
+    `advance NS`: the answer is `done NS SEAT TID`, when a thread is, `look NS`, when a message has
+    arrived, or `none NS`: nothing happens until then.
+    `resume`: that thread, or those that wait for the message, have asked, or wait.
+    Before an answer: `under_way TOPIC NODE`, all messages of a subscription are, or `arrived TOPIC
+    NODE`, one has.
     """
 
     def __init__(self, live: Live, requests: IO[str], answers: IO[str]) -> None:
@@ -159,14 +169,18 @@ class Answers:
         self._answers = answers
         self._threads: dict[tuple[str, str], LiveThread | None] = {}
         self._is_answered = False
+        live.passage, live.look = self._passage, partial(self._pause, "look")
 
     def serve(self) -> None:
         """Answer until the timekeeper ends."""
-        while (words := self._requests.readline().split()) and words[0] != "resume":
-            if words[0] == "ask":
-                self._ask(words[1:7], " ".join(words[7:]))
-            else:
-                self._advance(float(words[1]))
+        while until := self._serve_until("advance"):
+            self._advance(float(until[0]))
+
+    def _serve_until(self, request: str) -> list[str]:
+        """Take what threads ask for until another request comes; return its words."""
+        while (words := self._requests.readline().split()) and words[0] != request:
+            self._ask(words[1:7], " ".join(words[7:]))
+        return words[1:]
 
     def _ask(self, words: list[str], program: str) -> None:
         seat, tid, step, subject, node, role = words
@@ -179,7 +193,7 @@ class Answers:
         elif step == "wait":
             thread.wait(then)
         elif step == "woken":
-            thread.woken(float(subject), then)
+            thread.woken(then)
         elif step == "timer":
             thread.begin(live.timer_of(program, float(subject)), then)
         elif step == "take":
@@ -188,10 +202,20 @@ class Answers:
             thread.publish(live.publisher_of(node, subject), then)
 
     def _done(self, seat: str, tid: str) -> None:
-        """Let a thread go on; what it does next is asked before its CPU looks for another one."""
+        """Let a thread go on: it keeps its CPU if it asks for it again."""
+        self._pause("done", seat, tid)
+
+    def _passage(self, subscription: Subscription, is_under_way: bool) -> None:
+        verb = "under_way" if is_under_way else "arrived"
+        self._answers.write(f"{verb} {subscription.topic} {subscription.node}\n")
+
+    def _pause(self, verb: str, *words: str) -> None:
+        """Answer; what threads do then is asked before anything else happens at this time."""
+        if self._is_answered:
+            self._serve_until("advance")
         self._is_answered = True
-        self._answer(f"{int(self._live.env.now)} {seat} {tid}")
-        self.serve()
+        self._answer(verb, *words)
+        self._serve_until("resume")
 
     def _advance(self, until_ns: float) -> None:
         """Run what comes before `until_ns`: threads that are due then come before the rest."""
@@ -203,11 +227,10 @@ class Answers:
         if not self._is_answered:
             if env.now < until_ns:
                 env.run(until=until_ns)
-            self._answer(f"{int(env.now)}")
+            self._answer("none")
 
-    def _answer(self, line: str) -> None:
-        self._answers.write(f"{line}\n")
-        self._answers.flush()
+    def _answer(self, verb: str, *words: str) -> None:
+        print(verb, int(self._live.env.now), *words, file=self._answers, flush=True)
 
 
 def main(mapfile: str, profile: str, platform: str, seed: str) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import inf
 from typing import Protocol
 
 from simpy import Environment
@@ -13,7 +12,7 @@ from simpy import Environment
 from rmw_manycore_py.prediction.cpu import Task
 from rmw_manycore_py.prediction.executors import Work
 from rmw_manycore_py.prediction.simulation import Placed
-from rmw_manycore_py.prediction.topics import Message, Publisher, Taken, after
+from rmw_manycore_py.prediction.topics import Message, Publisher, Subscription, Taken, after
 from rmw_manycore_py.prediction.work import Execution
 
 Then = Callable[[], None]
@@ -36,17 +35,11 @@ class LivePlatform(Protocol):
     def is_under_way(self, work: Work) -> bool:
         """Return whether what a thread is about to take has not arrived."""
 
-    def is_all_under_way(self, placed: Placed) -> bool:
-        """Return whether a process has messages to come, and none that has arrived."""
+    def await_arrival(self, work: Work, then: Then) -> None:
+        """Call a function when what a thread is about to take has arrived."""
 
-    def await_arrival(self, placed: Placed, then: Then) -> None:
-        """Call a function when the next message of a process has come."""
-
-    def look_again(self, placed: Placed) -> None:
-        """Call the functions that await an arrival."""
-
-
-_ROUNDING_NS = 0.5  # of a due time to which the time until then was added
+    def note(self, subscription: Subscription) -> bool:
+        """Note that a subscription's queue has changed."""
 
 
 @dataclass(eq=False)
@@ -68,27 +61,9 @@ class LiveThread:
     _execution: Execution | None = None  # None: not drawn yet
     _left: list[tuple[float, int]] = field(default_factory=list)  # publications to come
 
-    def woken(self, due_ns: float, then: Then) -> None:
-        """Go on after a wait that ends at `due_ns`, or with a message that has arrived.
+    def woken(self, then: Then) -> None:
+        """Go on after a wait."""
 
-        The real message is there when it is published.
-        """
-        env = self.live.env
-
-        def is_early() -> bool:
-            return env.now < due_ns - _ROUNDING_NS and self.live.is_all_under_way(self.placed)
-
-        if is_early() and due_ns < inf:
-            after(env, due_ns - env.now, lambda _: self.live.look_again(self.placed))
-        self._wake_unless(is_early, then)
-
-    def _wake_unless(self, is_early: Callable[[], bool], then: Then) -> None:
-        if is_early():
-            self.live.await_arrival(self.placed, lambda: self._wake_unless(is_early, then))
-        else:
-            self._wake(then)
-
-    def _wake(self, then: Then) -> None:
         def go_on(_: object) -> None:
             if self.task.has_idle_cpu:
                 then()
@@ -105,9 +80,7 @@ class LiveThread:
         if work is None:
             self._run(0.0, then)
         elif self.live.is_under_way(work):
-            self._wake_unless(
-                lambda: self.live.is_under_way(work), lambda: self._dispatch(work, then)
-            )
+            self.live.await_arrival(work, lambda: self.woken(lambda: self._dispatch(work, then)))
         else:
             cluster = self.placed.site.core.cluster
             demand_ns = work.dispatch_ns.next() + self.live.reading_ns(work, cluster)
@@ -122,6 +95,8 @@ class LiveThread:
             self._taken = Taken(message, subscription, now)
             subscription.taken.append(self._taken)
             message.publisher.released(message)
+        if subscription is not None:
+            self.live.note(subscription)
         work.executions += 1
         if work.demand.always_publishes:
             self._draw(work.demand.next())

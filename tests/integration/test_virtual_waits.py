@@ -19,6 +19,9 @@ pytestmark = [
 ]
 
 
+CROSSING_MS = 50  # and again as much, until a message is read
+
+
 def model_of(tmp_path: Path, crossing_ms: float) -> tuple[str, ...]:
     """Return options of a profile of the nodes, and of a platform with a slow network."""
     profile, platform = tmp_path / "p.json", tmp_path / "target.yaml"
@@ -40,3 +43,12 @@ def test_a_callback_that_the_profile_lacks_takes_no_time(
     file = timed_mapfile(timed_waits, "camera", "filter", "sink")
     log = log_of(file, 0.14, *model_of(tmp_path, 2))
     assert log["filter"] == ["silence 0", "image 104", "triggered 110", "asked 120", "missed 130"]
+
+
+def test_a_wait_ends_while_a_message_is_under_way(timed_mapfile, log_of, tmp_path: Path) -> None:
+    file = timed_mapfile(timed_waits, "camera", "filter", "sink")
+    file.write_text(file.read_text().replace("sink], cluster: 1", "sink], cluster: 2"))
+    log = log_of(file, 0.24, *model_of(tmp_path, CROSSING_MS))
+    before = ["silence 0", "triggered 110", "asked 120", "missed 130"]
+    assert log["filter"] == [*before, "image 200"]
+    assert log["sink"] == ["answered 120", "image 200"]

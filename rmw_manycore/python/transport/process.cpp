@@ -154,8 +154,7 @@ public:
       deadline_ns = qos_now_ns() + static_cast<int64_t>(*timeout_s * ns_per_s);
     }
     const bool woken = sleep(*process, seen, deadline_ns);
-    virtual_time::elapse(
-      virtual_time::Step::woken, static_cast<uint64_t>(deadline_ns.value_or(infinite_ns)));
+    virtual_time::elapse(virtual_time::Step::woken);
     process->tracer().note(TraceKind::wait_end, nothing, 0, woken ? 1 : 0);
     return woken;
   }

@@ -120,6 +120,9 @@ std::unique_ptr<BoundClaim> BoundSubscription::claim() {
     shared_->process->require_membership();
     throw nb::buffer_error("the record claimed before has not been released");
   }
+  if (subscription().is_under_way()) {
+    return nullptr;
+  }
   std::optional<Claim> claim = subscription().claim();
   return claim ? std::make_unique<BoundClaim>(shared_, std::move(*claim)) : nullptr;
 }

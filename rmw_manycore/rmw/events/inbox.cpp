@@ -23,7 +23,7 @@ void Inbox::warn_of_drop(size_t size, const char * reason) noexcept {
 }
 
 uint64_t Inbox::unread() const {
-  if (!subscription_->has_data()) {
+  if (!subscription_->has_data() && !subscription_->is_under_way()) {
     return 0;
   }
   return std::max<uint64_t>(1, subscription_->waiting());

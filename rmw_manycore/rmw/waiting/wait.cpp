@@ -97,9 +97,7 @@ rmw_ret_t rmw_wait(
     if (!poll && !waited.any_ready()) {
       const std::optional<int64_t> deadline_ns = rmw_manycore::deadline_of(wait_timeout);
       ended = rmw_manycore::sleep_until_ready(sleeper, waited, deadline_ns);
-      manycore::virtual_time::elapse(
-        manycore::virtual_time::Step::woken,
-        static_cast<uint64_t>(deadline_ns.value_or(manycore::infinite_ns)));
+      manycore::virtual_time::elapse(manycore::virtual_time::Step::woken);
     }
     const bool some_ready = waited.keep_ready();
     tracer.note(manycore::TraceKind::wait_end, manycore::nothing, 0, some_ready ? 1 : 0);

@@ -92,7 +92,14 @@ const char * Subscription::topic() const noexcept { return impl_->entry.topic; }
 
 const char * Subscription::type() const noexcept { return impl_->entry.type; }
 
-bool Subscription::has_data() const noexcept { return impl_->finder.has_records(); }
+bool Subscription::has_data() const noexcept {
+  return impl_->finder.has_records() && !is_under_way();
+}
+
+bool Subscription::is_under_way() const noexcept {
+  const uint32_t incarnation = impl_->entry.slot.incarnation.load(std::memory_order_relaxed);
+  return !virtual_time::has_arrived(impl_->slot, incarnation);
+}
 
 Watchers & Subscription::watchers() noexcept { return impl_->header.watchers; }
 

@@ -29,6 +29,9 @@ public:
   /// True if claim() may find a record. It may still find none: the record may be expired or
   /// overwritten.
   bool has_data() const noexcept;
+  /// True if all records that claim() would find are under way on the platform that a run in
+  /// virtual time models. It would wait for the first one.
+  bool is_under_way() const noexcept;
 
   /// Threads that arrivals wake; initially the process's common word.
   Watchers & watchers() noexcept;

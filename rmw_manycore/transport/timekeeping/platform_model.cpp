@@ -2,7 +2,7 @@
 #include "transport/timekeeping/platform_model.hpp"
 
 #include <array>
-#include <cinttypes>
+#include <sstream>
 
 #include "platform/error.hpp"
 
@@ -25,18 +25,33 @@ void PlatformModel::ask(const Thread & thread, const std::string & what) {
 PlatformModel::Answer PlatformModel::advance(int64_t until_ns) {
   tell("advance " + std::to_string(until_ns));
   std::fflush(to_.get());
-  std::array<char, 128> line{};
   Answer answer{until_ns, std::nullopt};
-  Thread thread{};
+  while (true) {
+    std::istringstream words(next_line());
+    std::string verb;
+    words >> verb;
+    if (verb == "under_way" || verb == "arrived") {
+      Passage passage{verb == "arrived", {}, {}};
+      words >> passage.topic >> passage.node;
+      answer.passages.push_back(passage);
+      continue;
+    }
+    words >> answer.at_ns;
+    Thread thread{};
+    if (words >> thread.seat >> thread.tid) {
+      answer.done = thread;
+    }
+    answer.is_waiting = verb != "none";
+    return answer;
+  }
+}
+
+std::string PlatformModel::next_line() {
+  std::array<char, 1024> line{};  // two names of at most 255 characters
   if (std::fgets(line.data(), line.size(), from_.get()) == nullptr) {
     throw Error(ErrorCode::invalid_argument, "the model of the platform has ended");
   }
-  const int found = std::sscanf(
-    line.data(), "%" SCNd64 " %" SCNu32 " %" SCNd32, &answer.at_ns, &thread.seat, &thread.tid);
-  if (found == 3) {
-    answer.done = thread;
-  }
-  return answer;
+  return line.data();
 }
 
 void PlatformModel::resume() { tell("resume"); }

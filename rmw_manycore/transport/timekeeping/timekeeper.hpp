@@ -92,6 +92,8 @@ private:
   bool is_ready(const Seat & seat);
   void let_go(Seat & seat);
   void ask_model();
+  void resume_model();
+  void note(const PlatformModel::Passage & passage);
   std::string words_of(const Seat & seat) const;
   int64_t next_due_ns() const;
   void advance();
@@ -120,7 +122,7 @@ private:
   virtual_time::Page & page_;
   PlatformModel * const model_;
   std::map<uint32_t, pid_t> asked_;  ///< seats whose threads the model has in work
-  bool is_model_waiting_ = false;    ///< for the thread that it was done with
+  bool is_model_waiting_ = false;    ///< for what threads do after its last answer
   CommandInput commands_;
   std::map<uint32_t, Program> programs_;
   std::map<pid_t, ProcessThreads> receive_threads_;
