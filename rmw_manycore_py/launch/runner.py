@@ -24,7 +24,7 @@ from rmw_manycore_py.launch.events import (
 from rmw_manycore_py.launch.processes.node_process import NodeProcess
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import NodeState
-from rmw_manycore_py.launch.schedule import ended, respawned, schedule, schedule_late, started
+from rmw_manycore_py.launch.schedule import Schedule
 from rmw_manycore_py.launch.timekeeper import Timekeeper
 from rmw_manycore_py.process.signals import SignalInbox
 
@@ -58,6 +58,7 @@ class Runner:
         self._all_started: Handler | None = None
         self._end_s = float("inf")  # CLOCK_MONOTONIC, end of the run's duration
         self._timekeeper: Timekeeper | None = None
+        self._schedule = Schedule(self._nodes)
         # Output callbacks by node name.
         self.taps: defaultdict[str, list[Callable[[bytes], None]]] = defaultdict(list)
 
@@ -75,7 +76,7 @@ class Runner:
 
     def live_in(self, keeper: Timekeeper, kills: Sequence[tuple[str, float]]) -> None:
         """Run the nodes in virtual time, `kills` as in VirtualTime; call before they start."""
-        self._timekeeper = keeper
+        self._timekeeper = self._schedule.timekeeper = keeper
         for name, after_s in kills:
             keeper.kill(self._nodes.index(self.node(name)), after_s)
         for rank, node in enumerate(self._nodes):
@@ -115,7 +116,7 @@ class Runner:
             stack.callback(self._destroy_all)
             self.watch(inbox, lambda: self._take_signals(inbox))
             self._take_signals(inbox)
-            schedule(self._nodes)
+            self._schedule.begin()
             while not self._is_over():
                 self._start_next(duration_s)
                 self._end_without_nodes()
@@ -163,7 +164,7 @@ class Runner:
                 rank = self._nodes.index(node)
                 self._timekeeper.started(rank, node.process.pid, node.program.name)
             self._watch_node(node)
-            started(self._nodes, node)
+            self._schedule.started(node)
         else:
             self._report_end(node)
             if not node.was_asked_for:
@@ -220,15 +221,14 @@ class Runner:
         if node.program.supervised and not self._stopping and not node.is_held:
             self._restart(node)
             return
-        if not self._stopping and (successor := respawned(node)) is not None:
+        is_respawned = not self._stopping and self._schedule.respawn(node)
+        self._schedule.ended(node)
+        if is_respawned:
             assert node.ending is not None
             self.report(Restarting(node.program.name, node.ending.reason, node.last_lines))
-            self._nodes[self._nodes.index(node)] = successor
         else:
-            if self._timekeeper is not None:
-                self._timekeeper.gone(self._nodes.index(node))
+            self._schedule.drop(node)
             self._report_end(node)
-        ended(self._nodes, node)
         if node.is_removed:
             self._nodes.remove(node)
         elif node.program.rules.ends_run and not (node.is_wanted_again or node.is_held):
@@ -267,6 +267,7 @@ class Runner:
         node.is_held, node.is_wanted_again = True, False
         if node.state is NodeState.WAITING:
             node.withdraw()
+            self._schedule.drop(node)
             self._report_end(node)
         elif node.state is NodeState.RUNNING and not node.is_leaderless:
             node.stop()
@@ -305,8 +306,7 @@ class Runner:
             return
         node = NodeProcess(program)
         node.was_asked_for = True
-        schedule_late(self._nodes, node)
-        self._nodes.append(node)
+        self._schedule.add(node)
 
     def remove_node(self, name: str) -> None:
         """Stop a node, and forget it when it has ended."""
@@ -340,6 +340,9 @@ class Runner:
                 continue
             if report.kind == "killed":
                 self._nodes[int(report.text)].is_killed_as_asked = True
+                continue
+            if report.kind == "due":
+                self._schedule.due(int(report.text))
                 continue
             if report.kind == "ended":
                 self.unwatch(self._timekeeper)

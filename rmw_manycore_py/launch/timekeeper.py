@@ -52,7 +52,8 @@ class TimekeeperReport:
     """What the timekeeper reports.
 
     :ivar kind: `end` after the duration, `still` or `held` with why, `broken` if time ended early,
-        `killed` with the rank of a program that is about to be killed as asked.
+        `killed` with the rank of a program that is about to be killed as asked, `due` with that of
+        one to be started: time stands until it has joined, or is gone.
     """
 
     kind: str
@@ -112,6 +113,10 @@ class Timekeeper:
     def gone(self, rank: int) -> None:
         """Tell that a program has ended and is not started again."""
         self._tell(f"gone {rank}")
+
+    def start_in(self, rank: int, delay_s: float) -> None:
+        """Tell that a program, which does not run, is due when virtual time has passed."""
+        self._tell(f"later {rank} {round(delay_s * _NS_PER_S)}")
 
     def kill(self, rank: int, after_s: float) -> None:
         """Kill a program when virtual time has passed."""

@@ -93,15 +93,19 @@ def test_callbacks_on_threads_of_an_executor_take_time(mapfile, log_of) -> None:
 
 
 def test_a_node_is_killed_and_starts_again_at_the_same_times(mapfile, log_of) -> None:
-    file = mapfile("talker", "mortal", rules=", respawn: true")
+    file = mapfile("talker", "mortal", rules=", respawn: {delay: 0.25}")
     logs = [log_of(file, 3.5) for _ in range(2)]
     assert logs[0] == logs[1]
     births = [line for line in logs[0]["mortal"] if line.startswith("born")]
-    assert births == [f"born {START_NS + n * NS_PER_S} {START_NS + n * NS_PER_S}" for n in range(4)]
+    times_ns = [START_NS + n * 5 * NS_PER_S // 4 for n in range(3)]
+    assert births == [f"born {time_ns} {time_ns}" for time_ns in times_ns]
+    heard = [int(line.split()[2]) for line in logs[0]["mortal"] if line not in births]
+    assert heard[7:11] == [8, 9, 13, 14]  # time went on meanwhile
 
 
 def test_a_node_is_killed_from_outside_at_a_time(mapfile, log_of, manycore) -> None:
-    file = mapfile("talker", "victim", rules=f", respawn: true, env: {{{timed.BIRTHS}: /dev/null}}")
+    env = f"{{{timed.BIRTHS}: /dev/null}}"
+    file = mapfile("talker", "victim", rules=f", respawn: {{delay: 0}}, env: {env}")
     log = log_of(file, 2, "--virtual", "--instant", "--kill", "victim@1.25")
     births = [line.split()[1] for line in log["victim"] if line.startswith("born")]
     assert births == [f"{START_NS}", f"{START_NS + 5 * NS_PER_S // 4}"]
@@ -120,7 +124,7 @@ def test_a_node_that_was_to_be_killed_has_not_failed(mapfile, log_of) -> None:
 def test_a_node_dies_and_starts_again_while_another_one_computes(
     mapfile, log_of, tmp_path: Path
 ) -> None:
-    rules = f", respawn: true, env: {{{timed.BIRTHS}: {tmp_path}/births}}"
+    rules = f", respawn: {{delay: 0}}, env: {{{timed.BIRTHS}: {tmp_path}/births}}"
     log = log_of(mapfile("killer", "victim", rules=rules), 1.8)
     births = [line.split()[1] for line in log["victim"] if line.startswith("born")]
     assert births == [f"{START_NS}", f"{START_NS + NS_PER_S}"]

@@ -22,8 +22,8 @@ Command parse(const std::string & line) {
   } else if (verb == "gone") {
     command.kind = Command::Kind::gone;
     words >> command.rank;
-  } else if (verb == "kill") {
-    command.kind = Command::Kind::kill;
+  } else if (verb == "kill" || verb == "later") {
+    command.kind = verb == "kill" ? Command::Kind::kill : Command::Kind::later;
     words >> command.rank >> command.duration_ns;
   } else if (verb == "hold") {
     command.kind = Command::Kind::hold;

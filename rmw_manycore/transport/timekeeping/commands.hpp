@@ -12,6 +12,7 @@ struct Command {
   enum class Kind {
     start,   ///< `start RANK PID NAME`: the program's process exists; time stands until it joined
     gone,    ///< `gone RANK`: the program has ended and is not started again
+    later,   ///< `later RANK NS`: it does not run, and is to be started when NS have passed
     go,      ///< `go NS`: all programs were started; time ends after NS, unless that is 0
     kill,    ///< `kill RANK NS`: the program's processes are killed when NS have passed
     hold,    ///< `hold`: time stands

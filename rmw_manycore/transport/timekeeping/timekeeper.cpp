@@ -66,6 +66,7 @@ bool Timekeeper::step() {
   }
   for (auto & [rank, program] : programs_) {
     note_ends(program);
+    note_due(rank, program);
     if (program.state == Program::State::starting) {
       await_join(rank, program);
       return true;
@@ -99,12 +100,19 @@ void Timekeeper::obey(const Command & command) {
       program.leader = open_pidfd(command.pid);
       program.started_ns = monotonic_ns();
       program.state = Program::State::starting;
+      program.due_ns = never_ns;
       break;
     }
     case Command::Kind::gone:
-      note_ends(programs_[command.rank]);
-      programs_[command.rank].state = Program::State::gone;
+    case Command::Kind::later: {
+      const bool is_later = command.kind == Command::Kind::later;
+      Program & program = programs_[command.rank];
+      note_ends(program);
+      program.state = Program::State::gone;
+      program.due_ns = is_later ? page_.now_ns.load() + command.duration_ns : never_ns;
+      note_due(command.rank, program);
       break;
+    }
     case Command::Kind::go:
       has_begun_ = true;
       end_ns_ = command.duration_ns > 0 ? virtual_time::start_ns + command.duration_ns : never_ns;
@@ -235,6 +243,15 @@ void Timekeeper::note_end(pid_t pid) {
   }
 }
 
+/// Time stands until the run has started a program that is due.
+void Timekeeper::note_due(uint32_t rank, Program & program) {
+  if (program.due_ns <= page_.now_ns.load()) {
+    program.due_ns = never_ns;
+    program.state = Program::State::ended;
+    report("due", std::to_string(rank));
+  }
+}
+
 /// Waits until the receive threads have forwarded what was sent.
 void Timekeeper::drain() {
   const int64_t started_ns = monotonic_ns();
@@ -273,17 +290,31 @@ int64_t Timekeeper::next_due_ns() const {
   return next_ns;
 }
 
+int64_t Timekeeper::next_start_ns() const {
+  int64_t next_ns = never_ns;
+  for (const auto & [_, program] : programs_) {
+    next_ns = std::min(next_ns, program.due_ns);
+  }
+  return next_ns;
+}
+
 /// Nothing can happen at this time any more: on to when the next wait is due.
 void Timekeeper::advance() {
   const int64_t next_ns = next_due_ns();
   const int64_t kill_ns = kills_.empty() ? never_ns : kills_.begin()->first;
-  if (model_ != nullptr && advance_model(std::min({next_ns, end_ns_, stop_ns_, kill_ns}))) {
+  const int64_t start_ns = next_start_ns();
+  const int64_t others_ns = std::min({next_ns, end_ns_, stop_ns_});
+  if (model_ != nullptr && advance_model(std::min({others_ns, kill_ns, start_ns}))) {
     if (is_single_) {
       hold("something is due");
     }
     return;
   }
-  if (kill_ns <= std::min({next_ns, end_ns_, stop_ns_}) && kill_ns != never_ns) {
+  if (start_ns <= others_ns && start_ns < kill_ns) {
+    page_.now_ns.store(start_ns, std::memory_order_release);
+    return;
+  }
+  if (kill_ns <= others_ns && kill_ns != never_ns) {
     page_.now_ns.store(kill_ns, std::memory_order_release);
     kill_due();
     return;

@@ -50,6 +50,7 @@ private:
       ended,  ///< time stands until the run decides whether it is started again
       gone,
     };
+    int64_t due_ns = virtual_time::never_ns;  ///< when it is to be started
     std::string name;
     State state = State::starting;
     int64_t started_ns = 0;  ///< CLOCK_MONOTONIC
@@ -85,6 +86,7 @@ private:
   Members members(pid_t pid) const;
   void note_ends(Program & program);
   void note_end(pid_t pid);
+  void note_due(uint32_t rank, Program & program);
   void drain();
   bool is_drained();
   Key key_of(const Seat & seat) const;
@@ -96,6 +98,7 @@ private:
   void note(const PlatformModel::Passage & passage);
   std::string words_of(const Seat & seat) const;
   int64_t next_due_ns() const;
+  int64_t next_start_ns() const;
   void advance();
   bool advance_model(int64_t until_ns);
   void kill_due();
