@@ -178,6 +178,15 @@ def test_the_bridge_is_closed_and_mistakes_are_refused(manycore) -> None:
     assert "--instant and --factor exclude each other" in text
 
 
+def test_the_parts_of_hosts_run_together(mapfile, log_of, manycore) -> None:
+    file = mapfile("talker", "echo")
+    hosts = (f"  h{n}: {{clusters: [{n}], address: tcp/127.0.0.1:{7440 + n}}}" for n in (1, 2))
+    file.write_text("\n".join(("hosts:", *hosts, file.read_text())))
+    assert len(log_of(file, 1)["talker"]) == 9
+    text = manycore("run", file, "--virtual", "--host", "h1", status=2)
+    assert "without it, all nodes run on this one" in text
+
+
 @pytest.mark.needs("mcap")
 def test_a_recording_is_played_at_its_times(mapfile, log_of, tmp_path: Path) -> None:
     texts = [("/news", number / 100, str(number)) for number in range(200)]

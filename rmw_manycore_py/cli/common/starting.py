@@ -53,7 +53,7 @@ def prepared_run(
     if loaded.sections.clock == "virtual" and virtual is None:
         virtual = VirtualTime(factor=1.0)
     if virtual is not None and host is not None:
-        text = "--host: hosts of one platform have no common virtual time"
+        text = "--host: hosts have no common virtual time; without it, all nodes run on this one"
         raise ManycoreError(text, EXIT_BAD_INPUT)
     if virtual is not None and joins:
         text = "--join: the platform that is running lives in wall time, not in virtual time"
