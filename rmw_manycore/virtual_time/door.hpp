@@ -43,8 +43,9 @@ struct Door {
   /// Likewise, before a wait that does not block. Where the platform is modelled, the thread keeps
   /// its turn, and so its CPU, unless it polls again.
   void (*end_turn)(bool empty) noexcept;
-  /// Lets the time pass that this thread takes on the platform before a step.
-  void (*elapse)(Step next, uint64_t subject) noexcept;
+  /// Lets the time pass that this thread takes on the platform before a step. False if virtual time
+  /// ended meanwhile.
+  bool (*elapse)(Step next, uint64_t subject) noexcept;
   /// Whether a subscription's messages have arrived on the modelled platform, any of them.
   bool (*has_arrived)(uint32_t slot, uint32_t incarnation) noexcept;
 };

@@ -73,7 +73,7 @@ const Door the_door{
   },
   [](bool empty) noexcept { return Member::find()->yield(empty); },
   [](bool empty) noexcept { Member::find()->end_turn(empty); },
-  [](Step next, uint64_t subject) noexcept { Member::find()->elapse(next, subject); },
+  [](Step next, uint64_t subject) noexcept { return Member::find()->elapse(next, subject); },
   [](uint32_t slot, uint32_t incarnation) noexcept {
     return Member::find()->has_arrived(slot, incarnation);
   },

@@ -204,24 +204,25 @@ void Member::end_turn(bool empty) noexcept {
 }
 
 /// Between callbacks, only what begins one takes time.
-void Member::elapse(Step next, uint64_t subject) noexcept {
+bool Member::elapse(Step next, uint64_t subject) noexcept {
   own.has_asked = true;
   if (page_.is_modelled == 0) {
-    elapse_by_factor();
-    return;
+    return elapse_by_factor();
   }
   const bool begins = next == Step::take || next == Step::timer;
   if ((!begins && next != Step::woken && !own.is_in_callback) || is_over() || !has_joined()) {
-    return;
+    return true;
   }
   own.is_in_callback = begins || next == Step::publish;
-  if (Seat * const seat = seat_of_this_thread()) {
-    seat->process = no_process;
-    seat->due_ns = never_ns;
-    seat->next = next;
-    seat->subject = subject;
-    wait_in(*seat);
+  Seat * const seat = seat_of_this_thread();
+  if (seat == nullptr) {
+    return true;
   }
+  seat->process = no_process;
+  seat->due_ns = never_ns;
+  seat->next = next;
+  seat->subject = subject;
+  return wait_in(*seat);
 }
 
 bool Member::has_arrived(uint32_t slot, uint32_t incarnation) const noexcept {
@@ -229,12 +230,13 @@ bool Member::has_arrived(uint32_t slot, uint32_t incarnation) const noexcept {
 }
 
 /// Of threads that never wait in the middleware, as executors have them, from the first step on.
-void Member::elapse_by_factor() noexcept {
+bool Member::elapse_by_factor() noexcept {
   if (page_.factor <= 0 || is_over() || !has_joined() || seat_of_this_thread() == nullptr) {
-    return;
+    return true;
   }
   const int64_t computed_ns = clock_ns(CLOCK_THREAD_CPUTIME_ID) - own.computed_from_ns;
-  sleep_until(now_ns() + static_cast<int64_t>(static_cast<double>(computed_ns) * page_.factor));
+  const auto passing_ns = static_cast<int64_t>(static_cast<double>(computed_ns) * page_.factor);
+  return sleep_until(now_ns() + passing_ns);
 }
 
 }  // namespace manycore::virtual_time

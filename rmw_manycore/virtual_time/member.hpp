@@ -30,7 +30,7 @@ public:
   bool sleep_until(int64_t due_ns) noexcept;
   bool yield(bool empty) noexcept;
   void end_turn(bool empty) noexcept;
-  void elapse(Step next, uint64_t subject) noexcept;
+  bool elapse(Step next, uint64_t subject) noexcept;
   bool has_arrived(uint32_t slot, uint32_t incarnation) const noexcept;
 
 private:
@@ -39,7 +39,7 @@ private:
   Seat * seat_of_this_thread() noexcept;
   Seat * take_seat() noexcept;
   bool wait_in(Seat & seat) noexcept;
-  void elapse_by_factor() noexcept;
+  bool elapse_by_factor() noexcept;
   void end_if_alone() noexcept;
 
   const SharedMemory memory_;

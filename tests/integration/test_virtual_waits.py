@@ -52,3 +52,9 @@ def test_a_wait_ends_while_a_message_is_under_way(timed_mapfile, log_of, tmp_pat
     before = ["silence 0", "triggered 110", "asked 120", "missed 130"]
     assert log["filter"] == [*before, "image 200"]
     assert log["sink"] == ["answered 120", "image 200"]
+
+
+def test_a_run_may_end_while_a_message_is_read(timed_mapfile, log_of, tmp_path: Path) -> None:
+    file = timed_mapfile(timed_waits, "camera", "filter", "sink")
+    log = log_of(file, 0.18, *model_of(tmp_path, CROSSING_MS))
+    assert log["filter"] == ["silence 0", "triggered 110", "asked 120", "missed 130"]

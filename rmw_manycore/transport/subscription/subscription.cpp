@@ -107,8 +107,12 @@ std::optional<Claim> Subscription::claim() {
   Impl & impl = *impl_;
   impl.membership.require();
   const virtual_time::Door * const door = virtual_time::door();
-  if (door != nullptr && impl.finder.has_records()) {
-    door->elapse(virtual_time::Step::take, impl.slot);
+  if (
+    door != nullptr && impl.finder.has_records() &&
+    !door->elapse(virtual_time::Step::take, impl.slot)) {
+    // The run is ending. What has a signal to handle, as Python, returns from a take first: it may
+    // handle it where it makes an object of the message.
+    return std::nullopt;
   }
   FinishedPublishers finished(impl);
   std::unique_lock<HandoverMutex> lock(impl.mutex);
