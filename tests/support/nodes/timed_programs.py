@@ -64,8 +64,8 @@ def threads() -> None:
         thread = threading.Thread(target=publish)
         thread.start()
         with subscription.take() as message:
+            thread.join()  # or the two print into each other's line
             print(message.source_timestamp_ns - _START_NS, flush=True)
-        thread.join()
 
 
 def leaver() -> None:
