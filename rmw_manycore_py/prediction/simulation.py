@@ -317,6 +317,7 @@ class Simulation:
         for _ in range(plan.threads):
             task = Task.of(self.cpus.of(placed.site), placed.site.scheduling)
             log = EventLog.new(self._is_traced)
+            log.add(self.env.now, Kind.WAIT_BEGIN)
             placed.threads.append((task, log))
             thread = ExecutorThread(
                 self.env,

@@ -17,7 +17,7 @@ from rmw_manycore_py.prediction.target import HOST
 from rmw_manycore_py.process.scheduling import Scheduling
 from rmw_manycore_py.profile.model import Profile
 from rmw_manycore_py.trace.chains import Chain, Messages, Passage
-from rmw_manycore_py.trace.events import Kind, Trace
+from rmw_manycore_py.trace.events import Trace
 from rmw_manycore_py.trace.latency import TOTAL, latencies
 
 # Of all that is measured: other processes of the machine hardly delay it.
@@ -42,28 +42,22 @@ class Figures(BaseModel):
     others: float = 0.0  # share of the CPUs that other processes took
 
 
-class _Started(Messages):
-    """Messages of a trace whose nodes wait for work: while they start, they take all CPUs."""
+class _Since(Messages):
+    """Messages of a trace that were published at a time or later."""
 
-    def __init__(self, trace: Trace) -> None:
+    def __init__(self, trace: Trace, begin_ns: int) -> None:
         super().__init__(trace)
-        firsts_ns: dict[tuple[int, int], int] = {}
-        for (cluster, pid, _), events in trace.threads_by_id().items():
-            waits = events[events["kind"] == Kind.WAIT_BEGIN]
-            if len(waits):
-                first_ns = int(waits["time_ns"][0])
-                firsts_ns[cluster, pid] = min(firsts_ns.get((cluster, pid), first_ns), first_ns)
-        self._begin_ns = max(firsts_ns.values(), default=0)
+        self._begin_ns = begin_ns
 
     def passages(self, chain: Chain) -> list[Passage]:
-        """Return the passages of messages that were published since then."""
+        """Return the passages of these messages."""
         return [one for one in super().passages(chain) if one.published_ns[0] >= self._begin_ns]
 
 
 def measured_figures(trace: Trace) -> Figures:
     """Return the figures of a trace, from when all nodes have started."""
     recorded = Recorded.of(trace)
-    messages = _Started(trace)
+    messages = _Since(trace, recorded.begin_ns)
     chains = {}
     for one in latencies(messages, messages.chains):
         (total,) = (part for part in one.parts if part.name == TOTAL)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -42,7 +42,11 @@ class ProcessLoad:
 
 @dataclass(frozen=True)
 class Recorded:
-    """Numbers of a trace between the start of its last node and its last publication."""
+    """Numbers of a trace from when all nodes have started until its last publication.
+
+    A node has started when it first waits for work: until then it takes all of a CPU, which is not
+    what mappings and predictions are about.
+    """
 
     trace: Trace
     begin_ns: int
@@ -56,8 +60,8 @@ class Recorded:
         does not count as the last publication.
         """
         begin_ns, end_ns = _publishing_ns(trace)
-        last_join_ns = max(_joins_ns(trace), default=begin_ns)
-        return cls(trace, last_join_ns if last_join_ns < end_ns else begin_ns, end_ns)
+        started_ns = max(_starts_ns(trace), default=begin_ns)
+        return cls(trace, started_ns if started_ns < end_ns else begin_ns, end_ns)
 
     @property
     def seconds(self) -> float:
@@ -160,12 +164,25 @@ def _publishing_ns(trace: Trace) -> tuple[int, int]:
     return min(chosen), max(chosen)
 
 
-def _joins_ns(trace: Trace) -> Iterable[int]:
-    """Return when a process has first joined at each place that has a core."""
+def _starts_ns(trace: Trace) -> Iterator[int]:
+    """Yield when a process first waited for work at each place that has a core.
+
+    Those that had joined before the trace had started. One that never waits starts by joining.
+    """
     joins: dict[tuple[int, int, str], int] = {}
+    waits: dict[tuple[int, int, str], int] = {}
     for process in trace.processes:
-        events = merged([(process, thread) for thread in process.threads], (Kind.JOIN,))
-        if len(events) and process.core is not None:
+        if process.core is not None:
             place = (process.cluster, process.core, process.label)
-            joins[place] = min(int(events["time_ns"][0]), joins.get(place, _NEVER_NS))
-    return joins.values()
+            for found, kind in ((joins, Kind.JOIN), (waits, Kind.WAIT_BEGIN)):
+                first_ns = min(found.get(place, _NEVER_NS), _first_ns(process, kind))
+                if first_ns < _NEVER_NS:
+                    found[place] = first_ns
+    for place, join_ns in joins.items():
+        yield waits.get(place, join_ns)
+
+
+def _first_ns(process: Process, kind: Kind) -> int:
+    """Return when the first event of a kind happened; `_NEVER_NS` if none has."""
+    own = (thread.events[thread.events["kind"] == kind] for thread in process.threads)
+    return min((int(events["time_ns"][0]) for events in own if len(events)), default=_NEVER_NS)

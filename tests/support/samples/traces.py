@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from rmw_manycore_py.trace.chains import Messages
@@ -94,6 +96,18 @@ def example(slower_us: int = 0, rounds: int = 8, *, twice: bool = False) -> Trac
         endpoints,
         4,
     )
+
+
+def starting(trace: Trace, until_us: int) -> Trace:
+    """Let the sink join when the trace begins, and wait for no work until a time."""
+    camera, filtering, sink, told = trace.processes
+    (thread,) = sink.threads
+    events = thread.events
+    is_wait = np.isin(events["kind"], (Kind.WAIT_BEGIN, Kind.WAIT_END))
+    later = events[~is_wait | (events["time_ns"] >= until_us * US)]
+    joined = np.concatenate([np.array([event(1, Kind.JOIN, NO_ENDPOINT)], EVENT), later])
+    sink = replace(sink, threads=(replace(thread, events=joined),))
+    return replace(trace, processes=(camera, filtering, sink, told))
 
 
 def evaluated(trace: Trace) -> list[ChainLatency]:

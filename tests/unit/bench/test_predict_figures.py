@@ -3,28 +3,20 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 from rmw_manycore_py.bench.predict.figures import measured_figures
-from rmw_manycore_py.trace.events import Kind
-from support.samples.traces import example
+from support.samples.traces import example, starting
 
 pytestmark = pytest.mark.unit
 
-STARTS_MS = 55  # between two of the messages, which come every 10 ms
+STARTS_US = (5_000, 55_000)  # before all messages, and between two: they come every 10 ms
 
 
 def test_messages_count_from_when_all_nodes_wait_for_work() -> None:
     trace = example(rounds=40)
-    camera, filtering, sink, told = trace.processes
-    (thread,) = sink.threads
-    is_wait = (thread.events["kind"] == Kind.WAIT_BEGIN) | (thread.events["kind"] == Kind.WAIT_END)
-    is_early = thread.events["time_ns"] < STARTS_MS * 1_000_000
-    late = replace(thread, events=thread.events[~(is_wait & is_early)])
-    starting = replace(trace, processes=(camera, filtering, replace(sink, threads=(late,)), told))
     counts = [
-        [one.count for one in measured_figures(each).chains.values()] for each in (trace, starting)
+        [one.count for one in measured_figures(starting(trace, until_us)).chains.values()]
+        for until_us in STARTS_US
     ]
     assert counts == [[40], [35]]

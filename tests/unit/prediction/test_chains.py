@@ -14,6 +14,7 @@ from rmw_manycore_py.errors import FileError, ManycoreError
 from rmw_manycore_py.mapfile.mapping.recorded import Recorded
 from rmw_manycore_py.prediction import TARGETS, predict
 from rmw_manycore_py.prediction.attribution import attributed
+from rmw_manycore_py.prediction.events import START_NS
 from rmw_manycore_py.prediction.target_file import target_named
 from rmw_manycore_py.profile.caret import import_report
 from rmw_manycore_py.profile.model import Chain, Hop
@@ -46,7 +47,9 @@ def test_the_trace_agrees_with_the_prediction(tmp_path: Path, suffix: str) -> No
 def test_the_trace_has_loads() -> None:
     prediction = predict(sites(1, 2, 3), pipeline(), HOST, duration_s=10, is_traced=True)
     assert prediction.trace is not None
-    loads = {one.nodes: one.cpu_share for one in Recorded.of(prediction.trace).loads()}
+    recorded = Recorded.of(prediction.trace)
+    assert recorded.begin_ns == START_NS  # all nodes wait from the begin on
+    loads = {one.nodes: one.cpu_share for one in recorded.loads()}
     assert loads["/filter",] == pytest.approx(0.3, abs=0.02)
 
 

@@ -31,7 +31,7 @@ from rmw_manycore_py.trace.events import (
     endpoint_id,
 )
 from rmw_manycore_py.trace.files import save
-from support.samples.traces import INCARNATION, US, event, example, publish
+from support.samples.traces import INCARNATION, US, event, example, publish, starting, wait
 
 pytestmark = pytest.mark.unit
 
@@ -156,16 +156,35 @@ def test_topics_that_only_the_trace_knows_cross(placed: Placed, tmp_path: Path) 
     assert found.unknown == ()
 
 
-def test_a_rate_begins_when_the_last_node_has_joined(placed: Placed) -> None:
+def test_a_rate_begins_when_the_last_node_waits_for_work(placed: Placed) -> None:
     """A node that starts again is not the last one."""
-    joined = with_events(example(), 3, [event(45_000, Kind.JOIN, NO_ENDPOINT)])
-    early = next(one for one in joined.processes if one.cluster == 3)
-    again = np.array([event(75_000, Kind.JOIN, NO_ENDPOINT)], EVENT)
+    started = starting(example(), until_us=45_000)
+    early = next(one for one in started.processes if one.cluster == 3)
+    again = np.array([event(75_000, Kind.JOIN, NO_ENDPOINT), *wait(76_000, 77_000)], EVENT)
     second = replace(early, pid=99, threads=(Thread(99, "python", again, 0),))
-    trace = replace(joined, processes=(*joined.processes, second))
-    assert Recorded.of(trace).begin_ns == 45_000 * US
+    trace = replace(started, processes=(*started.processes, second))
+    assert Recorded.of(trace).begin_ns == 49_900 * US
     (crossing,) = facts(placed(1, 2, 2), trace).crossings
     assert crossing.messages == 4  # at 50, 60, 70 and 80 ms
+
+
+def test_a_load_is_without_the_time_in_which_nodes_start() -> None:
+    """The sink takes all of a CPU to start, and a quarter of one then."""
+    trace = starting(example(), until_us=45_000)
+    used_us = {1: 0, 49_900: 49_900, 89_900: 59_900}
+    rows = [event(at, Kind.CPU, NO_ENDPOINT, 0, used * US) for at, used in used_us.items()]
+    loads = {one.nodes: one.cpu_share for one in Recorded.of(with_events(trace, 3, rows)).loads()}
+    assert loads["/sink",] == pytest.approx(0.25)
+
+
+def test_a_node_that_never_waits_has_started_when_it_joined() -> None:
+    joined = with_events(example(), 1, [event(45_000, Kind.JOIN, NO_ENDPOINT)])
+    assert Recorded.of(joined).begin_ns == 45_000 * US
+
+
+def test_nodes_that_ran_before_the_trace_do_not_delay_its_begin() -> None:
+    """Their first wait may come late: until then they sleep in an earlier one."""
+    assert Recorded.of(example()).begin_ns == 10_002 * US
 
 
 def test_a_rate_ends_before_nodes_log_their_end(placed: Placed) -> None:
