@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -37,6 +37,13 @@ _OTHERS = (
 )
 
 
+class Moment(NamedTuple):
+    """A time of a trace, and what its sample calls it."""
+
+    time_ns: int
+    time_s: float
+
+
 class TracedCluster(NamedTuple):
     """A cluster, as far as a trace knows it."""
 
@@ -62,8 +69,13 @@ class _Counter:
 class _Course:
     """A value that was noted from time to time."""
 
-    times_ns: NDArray[np.int64]
-    values: NDArray[np.int64]
+    times_ns: NDArray[np.float64]  # np.interp would convert all of them each time
+    values: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, events: Events) -> _Course:
+        """Return the course of the events' values."""
+        return cls(events["time_ns"].astype(np.float64), events["value"].astype(np.float64))
 
     def at(self, time_ns: int) -> int:
         """Return the value, on the line between those before and after."""
@@ -88,17 +100,21 @@ class TraceCounters:
         clusters = {process.cluster for process in trace.processes}
         self._clusters = sorted(clusters | self._used_bytes.keys())
 
-    def at(self, time_ns: int, time_s: float) -> Sample:
-        """Return the counters at a time of the trace, which the sample calls `time_s`."""
+    def at(self, moments: Iterable[Moment]) -> Iterator[Sample]:
+        """Yield the counters at moments of the trace, each no earlier than the one before."""
         counts = np.zeros((len(self._graph.endpoints), _COLUMNS), dtype=np.int64)
-        for one in self._counters:
-            end = int(np.searchsorted(one.times_ns, time_ns, side="right"))
-            counts[:, one.column] += np.bincount(
-                one.rows[:end], weights=one.values[:end], minlength=len(counts)
-            ).astype(np.int64)
-        clusters = tuple(self._cluster(number, time_ns) for number in self._clusters)
-        cpu_ns = {pid: course.at(time_ns) for pid, course in self._cpu_ns.items()}
-        return Sample(time_s, self._graph, clusters, counts, cpu_ns)
+        begins = [0] * len(self._counters)
+        for time_ns, time_s in moments:
+            for index, one in enumerate(self._counters):
+                end = int(np.searchsorted(one.times_ns, time_ns, side="right"))
+                added = slice(begins[index], end)
+                counts[:, one.column] += np.bincount(
+                    one.rows[added], weights=one.values[added], minlength=len(counts)
+                ).astype(np.int64)
+                begins[index] = end
+            clusters = tuple(self._cluster(number, time_ns) for number in self._clusters)
+            cpu_ns = {pid: course.at(time_ns) for pid, course in self._cpu_ns.items()}
+            yield Sample(time_s, self._graph, clusters, counts.copy(), cpu_ns)
 
     def _cluster(self, number: int, time_ns: int) -> TracedCluster:
         used = self._used_bytes.get(number)
@@ -144,15 +160,11 @@ def _times_of(processes: Sequence[Process], kind: Kind) -> NDArray[np.int64]:
 
 
 def _course_of(process: Process, kind: Kind) -> _Course:
-    events = merged([(process, thread) for thread in process.threads], (kind,))
-    return _Course(events["time_ns"], events["value"].astype(np.int64))
+    return _Course.of(merged([(process, thread) for thread in process.threads], (kind,)))
 
 
 def _smem_of(trace: Trace) -> dict[int, _Course]:
     events = merged(list(trace.threads()), (Kind.SMEM,))
     return {
-        int(events["number"][own[0]]): _Course(
-            events["time_ns"][own], events["value"][own].astype(np.int64)
-        )
-        for own in split_by(events["number"])
+        int(events["number"][own[0]]): _Course.of(events[own]) for own in split_by(events["number"])
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -20,7 +20,7 @@ from rmw_manycore_py.platform.monitor.sample import Sample
 from rmw_manycore_py.platform.monitor.watch import WINDOW_S, Look
 from rmw_manycore_py.trace.events import Trace
 from rmw_manycore_py.view.history import LENGTH, History
-from rmw_manycore_py.view.trace_counters import TraceCounters
+from rmw_manycore_py.view.trace_counters import Moment, TraceCounters
 from rmw_manycore_py.view.trace_graph import traced_graph
 from rmw_manycore_py.view.tracing import chain_rows
 
@@ -52,7 +52,7 @@ class TraceRun:
         self.duration_s = (max(ends_ns) - self._begin_ns) / _NS_PER_S
         self._counters = TraceCounters(trace, traced_graph(trace))
         self._latencies = topic_latencies(trace)
-        self.whole = self._look(self._sample(0), self._sample(LAST_STEP))
+        self.whole = self._look_from(0, LAST_STEP)
         self.chip = Chip.of(self.whole)
         self.history = History()
         self.events: list[Event] = []
@@ -66,7 +66,7 @@ class TraceRun:
 
     def look_at(self, step: int) -> Look:
         """Return the look at a step, with rates over the time before it."""
-        return self._look(self._sample(max(step - self._window, 0)), self._sample(step))
+        return self._look_from(max(step - self._window, 0), step)
 
     @cached_property
     def chains(self) -> list[dict[str, Any]]:
@@ -79,9 +79,16 @@ class TraceRun:
         window_s = min(WINDOW_S, _MAX_WINDOW_SHARE * self.duration_s)
         return max(1, math.ceil(window_s * LAST_STEP / self.duration_s)) if self.duration_s else 1
 
-    def _sample(self, step: int) -> Sample:
+    def _samples(self, steps: Iterable[int]) -> Iterator[Sample]:
+        """Yield the counters at ascending steps."""
+        return self._counters.at(map(self._moment, steps))
+
+    def _moment(self, step: int) -> Moment:
         passed_s = self.duration_s * step / LAST_STEP
-        return self._counters.at(self._begin_ns + round(passed_s * _NS_PER_S), passed_s)
+        return Moment(self._begin_ns + round(passed_s * _NS_PER_S), passed_s)
+
+    def _look_from(self, before: int, after: int) -> Look:
+        return self._look(*self._samples((before, after)))
 
     def _look(self, before: Sample, after: Sample) -> Look:
         return Look(Loads(before, after), (), {}, (), self._latencies, None, None)
@@ -89,9 +96,9 @@ class TraceRun:
     def _watch(self) -> None:
         """Fill history and events, as a viewer of the running platform would have."""
         losses = Losses()
-        samples = deque([self._sample(0)], maxlen=self._window + 1)
-        for step in range(LENGTH):
-            samples.append(self._sample(step))
+        samples = deque(self._samples([0]), maxlen=self._window + 1)
+        for sample in self._samples(range(LENGTH)):
+            samples.append(sample)
             self.history.append(self._look(samples[0], samples[-1]), samples[-1].time_s)
             self._note(losses.events_of(Loads(samples[-2], samples[-1])), samples[-1].time_s)
         self._note(losses.rest(self.duration_s), self.duration_s)

@@ -55,6 +55,15 @@ def test_a_moment_has_the_rates_of_the_time_before_it(simulated: TraceRun) -> No
     assert len(set(messages)) == len(messages)
 
 
+def test_the_history_has_what_each_moment_shows(simulated: TraceRun) -> None:
+    """The history is counted in one pass, a moment from the begin."""
+    rates = simulated.history.whole()["series"]["messages/s"]
+    for step in (1, 2, 150, 151, LAST_STEP):
+        now = float(simulated.look_at(step).loads.rates_hz.sum())
+        assert now > 0 or step < 3
+        assert rates[step] == pytest.approx(now)
+
+
 def test_endpoints_are_those_of_their_processes(simulated: TraceRun) -> None:
     graph = simulated.whole.graph
     nodes = {member.slot: member.nodes for member in graph.members}
