@@ -9,6 +9,7 @@ from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native.enums import LOSSES, EndpointKind, EndpointRole
 from rmw_manycore_py.native.errors import translate_native_errors
+from rmw_manycore_py.native.platforms import running_text
 from rmw_manycore_py.ros.domain import checked_platform, default_platform
 from rmw_manycore_py.ros.names import full_node_name, node_names_by_process
 
@@ -145,8 +146,7 @@ def status(platform: str | None = None) -> PlatformStatus:
     name = default_platform() if platform is None else checked_platform(platform, "platform")
     known = platforms()
     if name not in known:
-        others = f"there is {', '.join(known)}" if known else "none is running"
-        raise ManycoreError(f"there is no platform '{name}'; {others}")
+        raise ManycoreError(f"there is no platform '{name}'; {running_text(known)}")
     with translate_native_errors(f"platform '{name}'"), _transport.Platform(name) as view:
         return _looked_at(view)
 

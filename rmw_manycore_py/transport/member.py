@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from rmw_manycore_py.native import _transport
+from rmw_manycore_py.native.platforms import running_text
 from rmw_manycore_py.platform.environment import (
     MAX_CLUSTER,
     MAX_CORE,
@@ -144,5 +145,4 @@ def join(
 def _require_platform(name: str) -> None:
     names = _transport.platforms()
     if name not in names:
-        others = f"there is {', '.join(names)}" if names else "none is running"
-        raise TransportError(f"there is no platform '{name}' to join; {others}")
+        raise TransportError(f"there is no platform '{name}' to join; {running_text(names)}")

@@ -6,6 +6,7 @@ from __future__ import annotations
 import ctypes
 import json
 import random
+import re
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -154,6 +155,20 @@ def test_a_damaged_platform_in_use_is_left_alone(clean, talker, platform) -> Non
     with alive.open("r+b") as file:
         file.write(whole)
     assert talker.stop_node()
+
+
+def test_a_dead_platform_is_not_offered(clean, talker, platform, start) -> None:
+    def said() -> str:
+        drawn = start(forked_manycore("view", "--platform", "none", "--once", "-o", "/nowhere.svg"))
+        assert drawn.wait() == 1, drawn
+        return drawn.output
+
+    assert re.search(rf"no platform 'none'; there is .*\b{platform}\b.* \(--platform\)", said())
+    kill_all(platform)
+    assert (PLATFORMS / platform).exists()
+    assert "no platform 'none'" in (text := said())
+    assert platform not in text
+    assert clean(platform).lines
 
 
 def test_lines_that_seem_held_need_force(clean, talker, platform) -> None:

@@ -11,6 +11,7 @@ from rmw_manycore_py.native import _transport
 from rmw_manycore_py.native._transport import EndpointInfo, NodeInfo, ProcessInfo
 from rmw_manycore_py.native.enums import LOSSES
 from rmw_manycore_py.native.errors import translate_native_errors
+from rmw_manycore_py.native.platforms import running_text
 from rmw_manycore_py.ros.names import full_node_name, is_hidden
 
 
@@ -21,11 +22,10 @@ def platform_names() -> list[str]:
 
 
 def require_platform(name: str) -> None:
-    """Raise ManycoreError, naming the existing platforms, if there is no such platform."""
+    """Raise ManycoreError, naming the platforms that run, if there is no such platform."""
     names = platform_names()
     if name not in names:
-        others = f"; there is {', '.join(names)} (--platform)" if names else "; none is running"
-        raise ManycoreError(f"no platform '{name}'{others}")
+        raise ManycoreError(f"no platform '{name}'; {running_text(names, ' (--platform)')}")
 
 
 def open_platform(name: str) -> _transport.Platform:

@@ -141,6 +141,7 @@ def _stale_platforms() -> Finding:
     subject = "platforms"
     try:
         from rmw_manycore_py.native import _transport
+        from rmw_manycore_py.native.platforms import is_alive
     except ImportError as error:
         return Finding(subject, Verdict.FAILURE, f"not checked: {error}")
     try:
@@ -152,14 +153,3 @@ def _stale_platforms() -> Finding:
     found = f"{alive} alive" + (f", dead or unreadable: {', '.join(dead)}" if dead else "")
     advice = "run `manycore clean`; if one remains, it reports the reason"
     return advised(subject, not dead, found, advice)
-
-
-def is_alive(name: str) -> bool:
-    """Return whether any process uses a platform; one that cannot be read counts as dead."""
-    from rmw_manycore_py.native import _transport
-
-    try:
-        with _transport.Platform(name) as opened:
-            return opened.info().alive
-    except _transport.PlatformError:
-        return False
