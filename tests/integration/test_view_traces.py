@@ -102,5 +102,7 @@ def test_what_cannot_be_shown_is_refused(manycore, simulated: Path, tmp_path: Pa
         (("--file", tmp_path / "missing.json"), 1, "missing.json: cannot be read"),
         (("--file", other), 2, "other.json"),
         (twice, 2, "--once draws one --file"),
+        (("--file", simulated, "--platform", "other"), 2, "--platform is for a platform"),
+        (("--file", simulated, "--period", "1"), 2, "--period is for a platform"),
     ):
         assert text in manycore("view", "--port", "0", *words, status=status), words

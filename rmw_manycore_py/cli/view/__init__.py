@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 
 from rmw_manycore_py.cli.common.looking import look_at
 from rmw_manycore_py.cli.common.options import examples, number_option, platform_option
@@ -77,6 +78,8 @@ def command(
         raise click.UsageError("--once and -o FILE require each other")
     if output is not None and len(files) > 1:
         raise click.UsageError("--once draws one --file")
+    if files:
+        _refuse_options_of_a_platform()
     if output is None:
         require_installed(WEB_SERVER)
     runs = [_run_in(file) for file in files]
@@ -101,6 +104,13 @@ def command(
             serve_traces(runs, listener)
         else:
             serve(platform, listener, period_s)
+
+
+def _refuse_options_of_a_platform() -> None:
+    context = click.get_current_context()
+    for option, name in (("--platform", "platform"), ("--period", "period_s")):
+        if context.get_parameter_source(name) == ParameterSource.COMMANDLINE:
+            raise click.UsageError(f"{option} is for a platform, not for --file")
 
 
 def _run_in(file: Path) -> TraceRun:
