@@ -142,10 +142,9 @@ function connect() {
   const address = new URL("live", location.href);
   address.protocol = "ws:";
   live = new WebSocket(address);
+  let isFirst = true;
   live.onopen = () => {
     flow.stop();
-    charts.forget();
-    forgetHappened(); // the server tells all of it again
     if (selected !== null) {
       send({ select: selected });
     }
@@ -153,7 +152,14 @@ function connect() {
       send({ seek: timeline.wanted }); // the server begins with the whole run
     }
   };
-  live.onmessage = (message) => show(JSON.parse(message.data));
+  live.onmessage = (message) => {
+    if (isFirst) { // it tells again all that is shown until then
+      charts.forget();
+      forgetHappened();
+      isFirst = false;
+    }
+    show(JSON.parse(message.data));
+  };
   live.onclose = () => {
     showState("manycore view has ended, or cannot be reached; trying again", false);
     flow.stop();
