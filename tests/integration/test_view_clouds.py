@@ -18,13 +18,15 @@ pytestmark = [
 ]
 
 # Latched clouds: a square of 20 x 10 m, its north-eastern corner higher, far from the map's origin;
-# a map in the same frame, another one in another frame, and a cloud without points.
+# a map in the same frame, another one in another frame, and a cloud without points. The first map
+# is published again in each frame that comes by a message.
 CLOUDS = """
 import numpy as np
 import rclpy
 from builtin_interfaces.msg import Time
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
+from std_msgs.msg import String
 from rmw_manycore_py.ndt.messages.point_cloud import encode
 
 rclpy.init()
@@ -35,8 +37,16 @@ clouds = {
     "above": (corners, "elsewhere"), "nothing": (corners[:0], "map"),
 }
 nodes = [rclpy.create_node(f"node_of_{name}") for name in clouds]
-for node, (name, (points, frame)) in zip(nodes, clouds.items()):
-    node.create_publisher(PointCloud2, name, kept).publish(encode(points, Time(), frame))
+publishers = {
+    name: node.create_publisher(PointCloud2, name, kept) for node, name in zip(nodes, clouds)
+}
+
+def publish(name, frame):
+    publishers[name].publish(encode(clouds[name][0], Time(), frame))
+
+for name, (_, frame) in clouds.items():
+    publish(name, frame)
+nodes[0].create_subscription(String, "frame", lambda words: publish("city", words.data), 10)
 print("published", flush=True)
 rclpy.spin(nodes[0])
 """
@@ -110,6 +120,16 @@ def test_a_cloud_is_drawn_from_above_on_the_map_of_its_frame(clouds) -> None:
     np.testing.assert_allclose(
         colours[GREY].min(axis=0) - south_west, [5 * px_per_metre, 5 * px_per_metre], atol=1.5
     )
+    assert clouds.complaints() == []
+
+
+def test_a_map_that_goes_to_another_frame_is_no_longer_drawn(clouds, manycore) -> None:
+    show_messages(clouds, "/square")
+    clouds.wait_for_text("#cloud-text", "grey: /city")
+    assert GREY in pixels_by_colour(clouds)
+    manycore("topic", "pub", "--once", "/frame", "std_msgs/msg/String", "data: elsewhere")
+    clouds.until(lambda: "grey" not in clouds.text("#cloud-text"), "the text without a map")
+    assert GREY not in pixels_by_colour(clouds)
     assert clouds.complaints() == []
 
 

@@ -50,7 +50,9 @@ class MapSearch:
         if message.header.frame_id != self._frame:
             self._cancels.pop(topic)()
             self._rejected.add(topic)
-            self._shown = None
+            if self._shown is not None:  # of this topic, which alone was kept
+                self._shown = None
+                self._show({"map": None})
             return
         row = {"topic": topic, **cloud_of(message, MAX_MAP_POINTS)}
         if "points" in row and row != self._shown:  # some maps are published over and over

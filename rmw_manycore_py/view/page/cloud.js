@@ -69,8 +69,9 @@ export class CloudPicture {
     }
   }
 
+  // map: null when the one that is shown has gone to another frame
   showMap(map) {
-    this.map = decoded(map);
+    this.map = map === null ? null : decoded(map);
     this.tell();
     this.draw();
   }
