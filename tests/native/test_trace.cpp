@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <csignal>
+#include <list>
 #include <thread>
 
 #include "node_role.hpp"
@@ -121,6 +122,40 @@ TEST_CASE("between clusters the receive thread's events lie between write and cl
   for (const auto & [record, hinted_ns] : saved.hinted_ns) {
     CHECK(saved.written_ns.at(record) <= hinted_ns);
   }
+}
+
+TEST_CASE("a receive thread wakes readers in the order of their matches") {
+  Fixture f;
+  std::list<Node> readers;
+  for (int i = 0; i < 3; ++i) {
+    readers.emplace_front(f.platform, 2);
+  }
+  std::vector<uint64_t> matched;  // slots of processes: the last one to join is the first
+  for (Node & reader : readers) {
+    reader.tell("subscription /x 100");
+    wait_until("a match", [&] { return f.publisher->matched().current == 2 + matched.size(); });
+    matched.push_back(f.inspection.readers_of(*f.publisher).back().process);
+  }
+  f.platform.receive_thread(2);
+  start_trace(f.registry(), {{2}, {}, 0});
+  publish(*f.publisher, 1);
+  publish(*f.publisher, 2);  // once it is handled, the threads have been woken for the first
+  const ClusterHeader & cluster = f.registry().clusters().at(2).header();
+  wait_until("all hints", [&] { return cluster.notifications == 6; });
+  stop_trace(f.registry());
+  TraceSaver saver(f.registry());
+  std::vector<uint64_t> woken;
+  for (const ProcessTrace & process : saver.processes()) {
+    for (const ThreadTrace & thread : process.threads) {
+      for (const TraceEvent & event : thread.events) {
+        if (!process.process && event.kind == TraceKind::wake && woken.size() < matched.size()) {
+          woken.push_back(event.number);
+        }
+      }
+    }
+  }
+  saver.finish();
+  CHECK(woken == matched);
 }
 
 TEST_CASE("a process that joins later is traced as well; only the selected cluster and nodes are") {
