@@ -41,13 +41,15 @@ class Part:
         return ordered[low], ordered[high]
 
     def row(self) -> dict[str, Any]:
-        """Return the JSON row."""
+        """Return the JSON row; JSON has no NaN."""
+        quantiles = {"p50_us": 0.5, "p99_us": 0.99, "max_us": 1}
         return {
             "part": self.name,
             "count": len(self.samples_us),
-            "p50_us": self.quantile(0.5),
-            "p99_us": self.quantile(0.99),
-            "max_us": self.quantile(1),
+            **{
+                name: self.quantile(share) if self.samples_us else None
+                for name, share in quantiles.items()
+            },
         }
 
 

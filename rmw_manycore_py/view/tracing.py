@@ -57,11 +57,10 @@ class Tracing:
 
 
 def chain_rows(trace: Trace) -> list[dict[str, Any]]:
-    """Return the latency of all chains, without parts that have no samples: JSON has no NaN."""
+    """Return the latency of all chains."""
     # Loaded when needed: it would delay the first picture.
     from rmw_manycore_py.trace.chains import Messages
     from rmw_manycore_py.trace.latency import latencies
 
     messages = Messages(trace)
-    rows = [one.row() for one in latencies(messages, messages.chains)]
-    return [{**row, "parts": [part for part in row["parts"] if part["count"]]} for row in rows]
+    return [one.row() for one in latencies(messages, messages.chains)]

@@ -60,6 +60,8 @@ def command(
     if as_json:
         print_json([one.row() for one in found])
         return
+    if not found:
+        echo("no message went through a chain")
     for number, one in enumerate(found):
         if number:
             echo()
@@ -89,6 +91,8 @@ def _show(one: ChainLatency) -> None:
     echo(escaped(one.name))
     table = new_table("  part", "#count", "#p50", "#p99", "#max")
     for part in one.parts:
-        values = (f"{part.quantile(share):.1f} us" for share in (0.5, 0.99, 1))
-        table.add_row(f"  {part.name}", str(len(part.samples_us)), *values)
+        count = len(part.samples_us)
+        shares = (0.5, 0.99, 1)
+        values = (f"{part.quantile(share):.1f} us" if count else "-" for share in shares)
+        table.add_row(f"  {part.name}", str(count), *values)
     print_table(table)
