@@ -8,10 +8,10 @@ import binascii
 import json
 import zlib
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, NonNegativeInt, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, NonNegativeInt, ValidationError
 
 from rmw_manycore_py.errors import FileError, Problem, invalid_field, what_is_wrong
 from rmw_manycore_py.trace.events import EVENT, Endpoint, Process, Thread, Trace
@@ -44,13 +44,19 @@ class _Process(_Strict):
 
 
 class _Endpoint(_Strict):
-    id: NonNegativeInt
+    id: int = Field(ge=0, lt=1 << 48)
     is_publisher: bool
-    role: str
+    role: Literal["topic", "request", "reply"]
     topic: str
     type: str
     node: str
     cluster: int
+
+
+class _Version(BaseModel):
+    """What a header of any version has."""
+
+    version: int
 
 
 class _Header(_Strict):
@@ -103,13 +109,14 @@ def from_text(text: str, path: Path) -> Trace:
 def parsed_header(text: str, path: Path) -> _Header:
     """Return the validated header."""
     try:
-        header = _Header.model_validate_json(text)
+        version = _Version.model_validate_json(text).version
+        if version != VERSION:
+            found = f"{version} (of another version of manycore: use that one)"
+            raise wrong(path, "version", str(VERSION), found)
+        return _Header.model_validate_json(text)
     except ValidationError as error:
         key, found = invalid_field(error)
         raise wrong(path, key or "header", "what manycore trace save writes", found) from error
-    if header.version != VERSION:
-        raise wrong(path, "version", str(VERSION), str(header.version))
-    return header
 
 
 def with_events(header: _Header, data: bytes, path: Path) -> Trace:

@@ -57,6 +57,26 @@ def test_what_is_no_whole_trace_is_refused_by_name(tmp_path: Path, suffix: str) 
         load(tmp_path / f"none{suffix}")
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('"version": 1', '"version": 2, "clock": "tai"', "version: expected 1, found 2"),
+        ('"role": "topic"', '"role": "action"', "endpoints.0.role: .* found .*'topic', 'request'"),
+        ('"id": ', '"id": 99999', "endpoints.0.id: .* found .*less than"),
+    ],
+)
+def test_a_header_of_another_version_or_with_other_values_is_refused(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    path = tmp_path / "t.csv"
+    save(example(), path)
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+    with pytest.raises(FileError, match=words):
+        load(path)
+
+
 def test_each_take_has_one_flow_through_the_receive_thread() -> None:
     trace = example()
     flows = flows_of(trace)
