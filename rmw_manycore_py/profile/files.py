@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from rmw_manycore_py.errors import FileError, ManycoreError, Problem, invalid_field
+from rmw_manycore_py.profile.consistency import misfits_of
 from rmw_manycore_py.profile.model import FORMAT, VERSION, Profile
 from rmw_manycore_py.trace.atomic_file import atomic_write
 
@@ -48,10 +49,13 @@ def load(path: Path) -> Profile:
         head = _Head.model_validate_json(content)
         if (head.format, head.version) != (FORMAT, VERSION):
             raise _problem(path, "version", str(VERSION), f"{head.version} of {head.format}")
-        return Profile.model_validate_json(content)
+        profile = Profile.model_validate_json(content)
     except ValidationError as error:
         key, found = invalid_field(error)
         raise _problem(path, key, "the profile of an application", found) from error
+    for misfit in misfits_of(profile):
+        raise _problem(path, *misfit)
+    return profile
 
 
 def _problem(path: Path, key: str, expected: str, found: str) -> FileError:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+import numpy as np
 
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
@@ -79,4 +80,5 @@ def _ms(profile: Profile, times_ns: Distribution | None, share: float | None) ->
         return ""
     if share is None:
         return f"{times_ns.mean / 1e6:.3f} ms"
-    return f"{times_ns.quantiles[profile.quantile_shares.index(share)] / 1e6:.3f} ms"
+    time_ns = np.interp(share, profile.quantile_shares, times_ns.quantiles)
+    return f"{time_ns / 1e6:.3f} ms"

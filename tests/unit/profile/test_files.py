@@ -78,6 +78,10 @@ def test_load_counts_cpu_time_before_wall_time(profile: Profile) -> None:
         ({"events": -1}, "events: expected the profile of an application, found .*greater"),
         ({"extra": 1}, "extra: expected the profile of an application, found Extra"),
         ({"nodes": [{"name": 3}]}, "nodes.0.name: expected the profile"),
+        ({"nodes": []}, r"node: expected a position in nodes, which has 0, found \d"),
+        ({"quantile_shares": [0.0, 1.0]}, "quantiles: expected 2 values, as quantile_shares"),
+        ({"quantile_shares": []}, r"quantile_shares: expected shares .* found \[\]"),
+        ({"quantile_shares": [0.5, 0.5]}, "quantile_shares: expected shares from 0 to 1, ascend"),
     ],
 )
 def test_a_file_of_another_kind_is_refused(
