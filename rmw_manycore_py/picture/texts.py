@@ -49,4 +49,5 @@ def fitted(text: str, width: float, character: float = PLAIN) -> str:
 
 
 def _short(value: float) -> str:
-    return f"{value:.0f}" if value >= 100 or value == 0 else f"{value:.2g}"
+    # From 99.5 on, two digits would be 1e+02.
+    return f"{value:.0f}" if value >= 99.5 or value == 0 else f"{value:.2g}"

@@ -70,6 +70,7 @@ def test_a_real_run_is_seen_above_a_simulated_one(
     browser.wait_for_text("#moment-text", "the whole run")
     browser.click("[data-node='/filter']")
     browser.wait_for_text("#details-facts", "CPU 30 %")
+    assert browser.text("#endpoints small") == ""  # a simulation has neither types nor QoS
     assert not browser.find("#trace").is_displayed()  # nothing runs that could be traced
     browser.driver.execute_script("moment.value = 0; moment.dispatchEvent(new Event('input'))")
     browser.wait_for_text("#moment-text", "0.00 s")

@@ -123,7 +123,7 @@ function nodeFacts(node) {
 }
 
 function topicFacts(topic) {
-  const facts = [topic.types.join(", "), topic.load];
+  const facts = [topic.types.join(", "), topic.load].filter((one) => one !== "");
   if (topic.latency !== null) {
     const { p50_us, p99_us, count } = topic.latency;
     facts.push(
@@ -148,7 +148,8 @@ function item(kind, endpoint) {
     return figure;
   }));
   figures.className = "figures";
-  const quiet = kind === "node" ? `${endpoint.type}, ${endpoint.qos}` : endpoint.qos;
+  const words = kind === "node" ? [endpoint.type, endpoint.qos] : [endpoint.qos];
+  const quiet = words.filter((one) => one !== "").join(", "); // a trace may tell neither
   found.append(`${endpoint.kind} `, name, figures, text("small", quiet));
   return found;
 }

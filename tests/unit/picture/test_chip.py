@@ -79,8 +79,8 @@ def test_only_what_changed_is_sent() -> None:
 
 
 def test_numbers_are_short() -> None:
-    assert [rate_text(rate) for rate in (0, 0.5, 9.96, 250, 1500)] == [
-        *("0 Hz", "0.5 Hz", "10 Hz", "250 Hz", "1.5 kHz")
+    assert [rate_text(rate) for rate in (0, 0.5, 9.96, 99.4, 99.6, 250, 1500)] == [
+        *("0 Hz", "0.5 Hz", "10 Hz", "99 Hz", "100 Hz", "250 Hz", "1.5 kHz")
     ]
     assert [bytes_text(size) for size in (0, 999, 1 << 21)] == ["0 B", "999 B", "2 MiB"]
     assert [time_text(us) for us in (8.4, 1500, 2e6)] == ["8.4 us", "1.5 ms", "2 s"]
