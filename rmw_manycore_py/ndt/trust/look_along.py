@@ -56,8 +56,6 @@ class LookAlong:
             self.stood_out = 0
             return None
         whole = self._matcher.align_once(scan.points, places[0].T_map_sensor, scan.regularization)
-        if not whole.converged:  # few points had found it from afar
-            whole = self._matcher.align_once(scan.points, whole.T_map_sensor, scan.regularization)
         best = self._matcher.explained(whole, scan.points)
         is_again = poses.distance_m(best.T_map_sensor, expected.poses[0]) < SAME_M
         self.stood_out = RESOLVED_AFTER if is_clear else (self.stood_out if is_again else 0) + 1
