@@ -43,12 +43,12 @@ def test_time_stops_before_what_is_done_at_that_instant(live: Live) -> None:
     asked = f"ask 0 7 timer {100 * MS} /camera timer camera"
     assert answers(
         live, asked, f"advance {DISPATCH_NS}", f"advance {DISPATCH_NS + 1}", "resume"
-    ) == [f"{DISPATCH_NS}", f"{DISPATCH_NS} 0 7"]
+    ) == [f"none {DISPATCH_NS}", f"done {DISPATCH_NS} 0 7"]
 
 
 def test_time_passes_without_threads(live: Live) -> None:
     assert answers(live, f"advance {MS}", f"advance {MS}", f"advance {2 * MS}") == [
-        f"{MS}",
-        f"{MS}",
-        f"{2 * MS}",
+        f"none {MS}",
+        f"none {MS}",
+        f"none {2 * MS}",
     ]
