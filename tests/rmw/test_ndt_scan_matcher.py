@@ -14,6 +14,7 @@ from autoware_internal_debug_msgs.msg import Float32Stamped, Int32Stamped
 from autoware_internal_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped, TransformStamped
+from numpy.typing import NDArray
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
 from tf2_msgs.msg import TFMessage
@@ -44,7 +45,6 @@ from support.nodes.scan_matching import (
     workers_below,
 )
 
-GENERATOR = np.random.default_rng(3)
 OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"
 
 
@@ -177,6 +177,12 @@ def without_orientation() -> PoseWithCovarianceStamped:
     return message
 
 
+def beyond_the_map() -> NDArray[np.float32]:
+    """Return a scan of the street that for the most part sees farther than the map."""
+    seen, up_m = street_scan(), np.float32([0, 0, 60])
+    return np.concatenate([seen, *(seen + times * up_m for times in (1, 2, 3))])
+
+
 BAD_SCANS = {
     "empty": (few(0), "no point that is finite"),
     "all NaN": (nan_points(), "no point that is finite"),
@@ -185,7 +191,7 @@ BAD_SCANS = {
     "cut off": (cut_off(), "bytes of data, found 10"),
     "unknown frame": (in_frame("lidar"), "Please publish TF lidar to base_link"),
     "no frame": (in_frame(""), "Please set its frame_id"),
-    "of nowhere": (GENERATOR.uniform(-40, 40, (3000, 3)).astype(np.float32), "% of the points"),
+    "beyond the map": (beyond_the_map(), "% of the points"),
 }
 BAD_GUESSES = {
     "NaN": guess_with(float("nan")),
