@@ -32,10 +32,7 @@ SEED = 3
 ERROR_M, ERROR_DEG = 2.0, 10.0  # offset for which errors are reported
 SECOND_LOOK, BY_FACES, LEVELS, THREE_LEVELS, ONE_LEVEL = (
     f"rmw_manycore {words}"
-    for words in (
-        *("second look", "second look, direct7"),
-        *("4 m, 2 m", "8 m, 4 m, 2 m", "2 m alone"),
-    )
+    for words in ("second look", "second look, direct7", "4 m, 2 m", "8 m, 4 m, 2 m", "2 m alone")
 )
 AUTOWARE, ICP = "as Autoware", "Open3D, multi-scale ICP"
 
@@ -94,8 +91,8 @@ def measure(run: Run) -> list[Result]:
         for name in (SECOND_LOOK, BY_FACES, LEVELS, THREE_LEVELS, ONE_LEVEL, AUTOWARE, ICP):
             results += _results(run, drive, name, OFFSETS)
         for name_of_street in STREETS:
-            all_of_street = (SECOND_LOOK, BY_FACES, LEVELS, ICP)
-            contenders = [name for name in all_of_street if _wants(run, name)]
+            names = (SECOND_LOOK, BY_FACES, LEVELS, ICP)
+            contenders = [name for name in names if _wants(run, name)]
             place = street(name_of_street, run.iterations(SCANS)) if contenders else drive
             for name in contenders:
                 results += _results(run, place, name, FAR_OFFSETS)
