@@ -40,8 +40,9 @@ def coarse_options(options: MatcherOptions, factor: float) -> _ndt.MapOptions:
 def polish_options(options: MatcherOptions, factor: float) -> _ndt.MapOptions:
     """Return the build options of a level that refines poses.
 
-    Its covariance is always PCL's: the identity of the others widens small voxels, of few points,
-    beyond their own size.
+    Always searches direct7, as coarse levels do: no score is taken from it. Its covariance is
+    always PCL's: the identity of the others widens small voxels, of few points, beyond their own
+    size.
     """
     return _ndt.MapOptions(
         voxel_size_m=factor * options.voxel_size_m,
