@@ -71,7 +71,7 @@ wheel: setup  ## a wheel in dist/, tested in an environment without a compiler
 bench: setup  ## short benches of messages, start-up, idle nodes, memory; tables, CSV in build/bench
 	$(VENV)/manycore bench all --quick --output build/bench
 
-lint: setup  ## style, types, spelling
+lint: setup .venv/tests  ## style, types, spelling
 	$(VENV)/ruff check
 	$(VENV)/ruff format --check
 	$(VENV)/mypy
