@@ -6,6 +6,7 @@
 #if defined(__x86_64__)
 #include <immintrin.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "ndt/map/table.hpp"
@@ -21,10 +22,11 @@
 namespace manycore::ndt {
 namespace avx2 {
 
-struct Lanes {
+struct Register {
   static constexpr size_t width = 8;
-  using F = __m256;
+  typedef float F __attribute__((vector_size(32)));
   typedef int32_t I __attribute__((vector_size(32)));
+  using M = F;
 
   static F load(const float * at) { return _mm256_load_ps(at); }
   static void store(float * at, F f) { _mm256_storeu_ps(at, f); }
@@ -34,43 +36,21 @@ struct Lanes {
   static F fma(F a, F b, F c) { return _mm256_fmadd_ps(a, b, c); }
   static F min(F a, F b) { return _mm256_min_ps(a, b); }
   static F max(F a, F b) { return _mm256_max_ps(a, b); }
-  static F at_most(F a, F b, F c) { return _mm256_and_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ), c); }
+  static M at_most(F a, F b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
+  static M equal(I a, int32_t i) {
+    return reinterpret_cast<M>(a == reinterpret_cast<I>(_mm256_set1_epi32(i)));
+  }
+  static uint32_t bits(M m) { return static_cast<uint32_t>(_mm256_movemask_ps(m)); }
+  static F only(M m, F f) { return _mm256_and_ps(m, f); }
+  static F put(F into, M m, F f) { return _mm256_blendv_ps(into, f, m); }
   static F shift_exponent(F f, I n) {
     return reinterpret_cast<F>(reinterpret_cast<I>(f) + (n << 23));
   }
-
-  /// Four fields of lines i and 4 + i, in this order.
-  static F half(const float * const (&lines)[width], size_t i, size_t field) {
-    const __m256 low = _mm256_castps128_ps256(_mm_load_ps(lines[i] + field));
-    return _mm256_insertf128_ps(low, _mm_load_ps(lines[4 + i] + field), 1);
-  }
-  /// Four fields of all lines, transposed, in line order.
-  static void load_four(const float * const (&lines)[width], size_t field, F * out) {
-    const F a = half(lines, 0, field);
-    const F b = half(lines, 1, field);
-    const F c = half(lines, 2, field);
-    const F d = half(lines, 3, field);
-    const F ab = _mm256_unpacklo_ps(a, b);
-    const F cd = _mm256_unpacklo_ps(c, d);
-    out[0] = _mm256_shuffle_ps(ab, cd, 0x44);
-    out[1] = _mm256_shuffle_ps(ab, cd, 0xEE);
-    const F ab_high = _mm256_unpackhi_ps(a, b);
-    const F cd_high = _mm256_unpackhi_ps(c, d);
-    out[2] = _mm256_shuffle_ps(ab_high, cd_high, 0x44);
-    out[3] = _mm256_shuffle_ps(ab_high, cd_high, 0xEE);
-  }
-
-  template<size_t fields>
-  static void load_lines(const float * const (&lines)[width], F (&out)[fields]) {
-    F all[(fields + 3) / 4 * 4];
-    for (size_t field = 0; field < fields; field += 4) {
-      load_four(lines, field, all + field);
-    }
-    for (size_t field = 0; field < fields; ++field) {
-      out[field] = all[field];
-    }
-  }
 };
+
+#include "ndt/kernel/wide.hpp"
+
+using Lanes = Wide<Register>;
 
 #include "ndt/kernel/pass_body.hpp"
 

@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// Kernel for CPUs with AVX-512: sixteen points at a time, one voxel line per register.
+// Kernel for CPUs with AVX-512: sixteen points at a time.
 
 #include "ndt/kernel/pass.hpp"
 
@@ -11,6 +11,7 @@
 #endif
 #include <immintrin.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "ndt/map/table.hpp"
@@ -31,6 +32,7 @@ struct Lanes {
   static constexpr size_t width = 16;
   using F = __m512;
   typedef int32_t I __attribute__((vector_size(64)));
+  using M = __mmask16;
 
   static F load(const float * at) { return _mm512_load_ps(at); }
   static void store(float * at, F f) { _mm512_storeu_ps(at, f); }
@@ -40,45 +42,15 @@ struct Lanes {
   static F fma(F a, F b, F c) { return _mm512_fmadd_ps(a, b, c); }
   static F min(F a, F b) { return _mm512_min_ps(a, b); }
   static F max(F a, F b) { return _mm512_max_ps(a, b); }
-  static F at_most(F a, F b, F c) {
-    return _mm512_maskz_mov_ps(_mm512_cmp_ps_mask(a, b, _CMP_LE_OQ), c);
+  static M at_most(F a, F b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
+  static M equal(I a, int32_t i) {
+    return _mm512_cmpeq_epi32_mask(reinterpret_cast<__m512i>(a), _mm512_set1_epi32(i));
   }
+  static uint32_t bits(M m) { return m; }
+  static F only(M m, F f) { return _mm512_maskz_mov_ps(m, f); }
+  static F put(F into, M m, F f) { return _mm512_mask_mov_ps(into, m, f); }
   static F shift_exponent(F f, I n) {
     return reinterpret_cast<F>(reinterpret_cast<I>(f) + (n << 23));
-  }
-
-  /// Four fields of lines i, 4 + i, 8 + i, 12 + i, in this order.
-  static F quarter(const float * const (&lines)[width], size_t i, size_t field) {
-    __m512 out = _mm512_castps128_ps512(_mm_load_ps(lines[i] + field));
-    out = _mm512_insertf32x4(out, _mm_load_ps(lines[4 + i] + field), 1);
-    out = _mm512_insertf32x4(out, _mm_load_ps(lines[8 + i] + field), 2);
-    return _mm512_insertf32x4(out, _mm_load_ps(lines[12 + i] + field), 3);
-  }
-  /// Four fields of all lines, transposed, in line order.
-  static void load_four(const float * const (&lines)[width], size_t field, F * out) {
-    const F a = quarter(lines, 0, field);
-    const F b = quarter(lines, 1, field);
-    const F c = quarter(lines, 2, field);
-    const F d = quarter(lines, 3, field);
-    const F ab = _mm512_unpacklo_ps(a, b);
-    const F cd = _mm512_unpacklo_ps(c, d);
-    out[0] = _mm512_shuffle_ps(ab, cd, 0x44);
-    out[1] = _mm512_shuffle_ps(ab, cd, 0xEE);
-    const F ab_high = _mm512_unpackhi_ps(a, b);
-    const F cd_high = _mm512_unpackhi_ps(c, d);
-    out[2] = _mm512_shuffle_ps(ab_high, cd_high, 0x44);
-    out[3] = _mm512_shuffle_ps(ab_high, cd_high, 0xEE);
-  }
-
-  template<size_t fields>
-  static void load_lines(const float * const (&lines)[width], F (&out)[fields]) {
-    F all[(fields + 3) / 4 * 4];
-    for (size_t field = 0; field < fields; field += 4) {
-      load_four(lines, field, all + field);
-    }
-    for (size_t field = 0; field < fields; ++field) {
-      out[field] = all[field];
-    }
   }
 };
 

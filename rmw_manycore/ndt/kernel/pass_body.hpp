@@ -1,18 +1,23 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// The hot loops, for any register width. Included by pass_<simd>.cpp inside its own namespace,
+// The hot loops, for any instruction set. Included by pass_<simd>.cpp inside its own namespace,
 // after that file has defined `Lanes`:
-//   width                 lanes of a register
+//   width                 lanes of a register: the points of a group
 //   F, I                  registers of floats and of 32-bit integers, with C's operators
+//   M                     mask of lanes
 //   load, store, set1     of floats
 //   to_int, to_float      truncating, exact
 //   fma(a, b, c)          a * b + c, fused where the CPU can
 //   min, max              the second operand where one is not a number
-//   at_most(a, b, c)      c where a <= b, else 0
+//   at_most(a, b)         mask of the lanes where a <= b
+//   equal(a, i)           mask of the lanes of integers that are i
+//   bits(m)               lane i of a mask as bit i
+//   only(m, f)            f in the lanes of a mask, else 0
+//   put(into, m, f)       f in the lanes of a mask, else those of `into`
 //   shift_exponent(f, n)  f * 2^n
-//   load_lines            of `width` voxel lines the first `line_fields` floats, transposed
 
 using F = Lanes::F;
 using I = Lanes::I;
+static_assert(Lanes::width == group_points);
 
 /// Fields of a voxel line: mean, weight, inverse covariance.
 constexpr size_t line_fields = 10;
@@ -52,7 +57,7 @@ Constants constants_of(const MapHeader & map, const PassPose & pose, float d2) {
 }
 
 /// 2^x for x <= 0, accurate to 2e-7; 0 below 2^-126. Taylor polynomial of 2^r on [-1/2, 1/2].
-inline F exp2_negative(F x) {
+inline F exp2_negative(const F & x) {
   const F bounded = Lanes::max(x, Lanes::set1(-126));
   const I n = Lanes::to_int(bounded - Lanes::set1(0.5F));
   const F r = bounded - Lanes::to_float(n);
@@ -63,38 +68,55 @@ inline F exp2_negative(F x) {
   p = Lanes::fma(p, r, Lanes::set1(2.4022651e-1F));
   p = Lanes::fma(p, r, Lanes::set1(6.9314718e-1F));
   p = Lanes::fma(p, r, Lanes::set1(1));
-  return Lanes::at_most(Lanes::set1(-126), x, Lanes::shift_exponent(p, n));
+  return Lanes::only(Lanes::at_most(Lanes::set1(-126), x), Lanes::shift_exponent(p, n));
 }
 
-/// One point per lane: rotated into the map frame (q), and its voxel list.
+/// Lanes whose points lie in one cell, and so see the same voxels: on average a group of recorded
+/// scans is in two cells. A voxel that several lanes see is read once.
+struct InCell {
+  Lanes::M lanes;
+  const uint32_t * list;  // of the voxels that are left
+};
+
+/// One point per lane: rotated into the map frame (q), and the cells of those that see a
+/// voxel.
 struct Sight {
   F q[3];
   F p[3];  // q translated, relative to the map's origin
-  const uint32_t * lists[Lanes::width];
+  InCell cells[Lanes::width];
+  size_t cell_count = 0;
 };
 
-/// Looks up the voxel lists in the map's table; points adjacent in memory often share a cell.
-struct LookUp {
-  void operator()(const MapView & map, size_t, const I & key, Sight & s) const {
-    uint32_t keys[Lanes::width];
-    std::memcpy(keys, &key, sizeof keys);
-    for (size_t lane = 0; lane < Lanes::width; ++lane) {
-      s.lists[lane] = lane > 0 && keys[lane] == keys[lane - 1]
-                        ? s.lists[lane - 1]
-                        : map.lists + find_list(map, keys[lane]);
-    }
+/// Calls visit(lanes, id) for each id among the lanes.
+template<typename Visit>
+inline void for_each_id(const I & id, Visit visit) {
+  int32_t ids[Lanes::width];
+  std::memcpy(ids, &id, sizeof ids);
+  constexpr uint32_t all = (uint32_t{1} << Lanes::width) - 1;
+  for (uint32_t left = all; left != 0;) {
+    const int32_t next = ids[__builtin_ctz(left)];
+    const Lanes::M lanes = Lanes::equal(id, next);
+    left &= ~Lanes::bits(lanes);
+    visit(lanes, static_cast<uint32_t>(next));
   }
+}
+
+/// Looks up the voxel lists in the map's table.
+struct LookUp {
+  I ids(size_t, const I & key) const { return key; }
+  uint32_t list(const MapView & map, uint32_t key) const { return find_list(map, key); }
 };
 
 /// Uses voxel lists found by an earlier search().
 struct Found {
   const uint32_t * list_of_point;
 
-  void operator()(const MapView & map, size_t first, const I &, Sight & s) const {
-    for (size_t lane = 0; lane < Lanes::width; ++lane) {
-      s.lists[lane] = map.lists + list_of_point[first + lane];
-    }
+  I ids(size_t first, const I &) const {
+    I lists;
+    std::memcpy(&lists, list_of_point + first, sizeof lists);
+    return lists;
   }
+  uint32_t list(const MapView &, uint32_t found) const { return found; }
 };
 
 template<typename Find>
@@ -115,21 +137,38 @@ inline Sight look(
     cell[i] = Lanes::to_int(Lanes::min(Lanes::max(place, Lanes::set1(0)), c.last_cell[i]));
   }
   const I key = cell[0] + (cell[1] + cell[2] * c.cells_y) * c.cells_x;
-  find(map, first, key, s);
+  for_each_id(find.ids(first, key), [&](const Lanes::M & lanes, uint32_t id) {
+    const uint32_t list = find.list(map, id);
+    if (list != empty_list) {
+      s.cells[s.cell_count++] = {lanes, map.lists + list};
+    }
+  });
   return s;
 }
 
-/// Advances to the next voxel of each lane's list, line 0 at the end of a list. False when all
-/// lists are at their end.
-inline bool next_voxels(const MapView & map, Sight & s, const float * (&lines)[Lanes::width]) {
-  uint32_t any = 0;
-  for (size_t lane = 0; lane < Lanes::width; ++lane) {
-    const uint32_t line = *s.lists[lane];
-    s.lists[lane] += line != 0;
-    lines[lane] = map.lines[line].mean_m;
-    any |= line;
+/// Moves fields of the next voxel of each cell into its lanes; the other lanes become zero, and so
+/// weigh nothing.
+template<size_t from, size_t to>
+inline void load_fields(const MapView & map, const Sight & s, F (&fields)[line_fields]) {
+  const float * line = map.lines[*s.cells[0].list].mean_m;
+  for (size_t field = from; field < to; ++field) {
+    fields[field] = Lanes::only(s.cells[0].lanes, Lanes::set1(line[field]));
   }
-  return any != 0;
+  for (size_t i = 1; i < s.cell_count; ++i) {
+    line = map.lines[*s.cells[i].list].mean_m;
+    for (size_t field = from; field < to; ++field) {
+      fields[field] = Lanes::put(fields[field], s.cells[i].lanes, Lanes::set1(line[field]));
+    }
+  }
+}
+
+/// Moves each cell to its next voxel, and drops those that have no more.
+inline void advance(Sight & s) {
+  for (size_t i = s.cell_count; i-- > 0;) {
+    if (*++s.cells[i].list == 0) {
+      s.cells[i] = s.cells[--s.cell_count];
+    }
+  }
 }
 
 /// Sums over the voxels of each lane's point, without the factors of q.
@@ -143,16 +182,20 @@ struct PointSums {
 
 template<bool by_radius>
 inline void add_voxels(
-  const Constants & c, const Sight & s, const float * const (&lines)[Lanes::width],
-  PointSums & sums) {
+  const MapView & map, const Constants & c, const Sight & s, PointSums & sums) {
   F v[line_fields];
-  Lanes::load_lines(lines, v);
+  load_fields<0, 4>(map, s, v);
   const F x[3] = {s.p[0] - v[0], s.p[1] - v[1], s.p[2] - v[2]};
   F weight = v[3];
   if (by_radius) {
     const F squared = Lanes::fma(x[0], x[0], Lanes::fma(x[1], x[1], x[2] * x[2]));
-    weight = Lanes::at_most(squared, c.squared_size, weight);
+    const Lanes::M near = Lanes::at_most(squared, c.squared_size);
+    if (Lanes::bits(near) == 0) {
+      return;
+    }
+    weight = Lanes::only(near, weight);
   }
+  load_fields<4, line_fields>(map, s, v);
   const F * const b = v + 4;
   const F f[3] = {
     Lanes::fma(b[0], x[0], Lanes::fma(b[1], x[1], b[2] * x[2])),
@@ -236,16 +279,13 @@ TangentSums run(
   TangentSums out;
   size_t undrained = 0;
   for (size_t number = bin; number < scan.used; number += bin_count) {
-    const size_t group = scan.group(number);
-    for (size_t part = 0; part < group_points; part += Lanes::width) {
-      Sight sight = look(map, scan, c, group * group_points + part, find);
-      PointSums points = {};
-      const float * lines[Lanes::width];
-      while (next_voxels(map, sight, lines)) {
-        add_voxels<by_radius>(c, sight, lines, points);
-      }
-      add_points(sight, points, sums);
+    Sight sight = look(map, scan, c, scan.group(number) * group_points, find);
+    PointSums points = {};
+    while (sight.cell_count > 0) {
+      add_voxels<by_radius>(map, c, sight, points);
+      advance(sight);
     }
+    add_points(sight, points, sums);
     if (++undrained == groups_per_drain) {
       drain(sums, out);
       undrained = 0;
@@ -279,12 +319,13 @@ void search(
   const MapView & map, const ScanView & scan, const PassPose & pose, size_t bin, uint32_t * found) {
   const Constants c = constants_of(*map.header, pose, 0);
   for (size_t number = bin; number < scan.used; number += bin_count) {
-    const size_t group = scan.group(number);
-    for (size_t part = 0; part < group_points; part += Lanes::width) {
-      const size_t first = group * group_points + part;
-      const Sight sight = look(map, scan, c, first, LookUp{});
-      for (size_t lane = 0; lane < Lanes::width; ++lane) {
-        found[first + lane] = static_cast<uint32_t>(sight.lists[lane] - map.lists);
+    const size_t first = scan.group(number) * group_points;
+    const Sight sight = look(map, scan, c, first, LookUp{});
+    std::fill_n(found + first, group_points, empty_list);
+    for (size_t i = 0; i < sight.cell_count; ++i) {
+      const InCell & in = sight.cells[i];
+      for (uint32_t left = Lanes::bits(in.lanes); left != 0; left &= left - 1) {
+        found[first + __builtin_ctz(left)] = static_cast<uint32_t>(in.list - map.lists);
       }
     }
   }

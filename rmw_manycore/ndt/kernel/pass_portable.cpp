@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 // Kernel for any CPU, with the compiler's vectors of four: SSE2 on x86-64, NEON on ARM.
 
+#include <algorithm>
 #include <cstring>
 
 #include "ndt/kernel/pass.hpp"
@@ -9,10 +10,11 @@
 namespace manycore::ndt {
 namespace portable {
 
-struct Lanes {
+struct Register {
   static constexpr size_t width = 4;
   typedef float F __attribute__((vector_size(16)));
   typedef int32_t I __attribute__((vector_size(16)));
+  using M = I;
 
   static F load(const float * at) {
     F f;
@@ -30,18 +32,22 @@ struct Lanes {
   }
   static F min(F a, F b) { return choose(a < b, a, b); }
   static F max(F a, F b) { return choose(a > b, a, b); }
-  static F at_most(F a, F b, F c) { return reinterpret_cast<F>(reinterpret_cast<I>(c) & (a <= b)); }
+  static M at_most(F a, F b) { return a <= b; }
+  static M equal(I a, int32_t i) { return a == i; }
+  static uint32_t bits(M m) {
+    const I bit = m & I{1, 2, 4, 8};
+    return static_cast<uint32_t>(bit[0] | bit[1] | bit[2] | bit[3]);
+  }
+  static F only(M m, F f) { return reinterpret_cast<F>(reinterpret_cast<I>(f) & m); }
+  static F put(F into, M m, F f) { return choose(m, f, into); }
   static F shift_exponent(F f, I n) {
     return reinterpret_cast<F>(reinterpret_cast<I>(f) + (n << 23));
   }
-
-  template<size_t fields>
-  static void load_lines(const float * const (&lines)[width], F (&out)[fields]) {
-    for (size_t field = 0; field < fields; ++field) {
-      out[field] = F{lines[0][field], lines[1][field], lines[2][field], lines[3][field]};
-    }
-  }
 };
+
+#include "ndt/kernel/wide.hpp"
+
+using Lanes = Wide<Wide<Register>>;
 
 #include "ndt/kernel/pass_body.hpp"
 
