@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// Kernel for CPUs with AVX2 and FMA: eight points at a time.
+// Kernel for CPUs with AVX2 and FMA: eight points in a register, two registers at a time.
 
 #include "ndt/kernel/pass.hpp"
 
@@ -29,7 +29,11 @@ struct Register {
   using M = F;
 
   static F load(const float * at) { return _mm256_load_ps(at); }
-  static void store(float * at, F f) { _mm256_storeu_ps(at, f); }
+  static float sum(F f) {
+    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(f), _mm256_extractf128_ps(f, 1));
+    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+    return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
+  }
   static F set1(float f) { return _mm256_set1_ps(f); }
   static I to_int(F f) { return reinterpret_cast<I>(_mm256_cvttps_epi32(f)); }
   static F to_float(I i) { return _mm256_cvtepi32_ps(reinterpret_cast<__m256i>(i)); }

@@ -35,7 +35,12 @@ struct Lanes {
   using M = __mmask16;
 
   static F load(const float * at) { return _mm512_load_ps(at); }
-  static void store(float * at, F f) { _mm512_storeu_ps(at, f); }
+  static float sum(F f) {
+    const __m256 eight = _mm256_add_ps(_mm512_castps512_ps256(f), _mm512_extractf32x8_ps(f, 1));
+    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
+    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+    return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
+  }
   static F set1(float f) { return _mm512_set1_ps(f); }
   static I to_int(F f) { return reinterpret_cast<I>(_mm512_cvttps_epi32(f)); }
   static F to_float(I i) { return _mm512_cvtepi32_ps(reinterpret_cast<__m512i>(i)); }

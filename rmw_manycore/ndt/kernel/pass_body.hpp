@@ -4,7 +4,8 @@
 //   width                 lanes of a register: the points of a group
 //   F, I                  registers of floats and of 32-bit integers, with C's operators
 //   M                     mask of lanes
-//   load, store, set1     of floats
+//   load, set1            of floats
+//   sum                   of the lanes: the halves, their halves and so on
 //   to_int, to_float      truncating, exact
 //   fma(a, b, c)          a * b + c, fused where the CPU can
 //   min, max              the second operand where one is not a number
@@ -78,8 +79,7 @@ struct InCell {
   const uint32_t * list;  // of the voxels that are left
 };
 
-/// One point per lane: rotated into the map frame (q), and the cells of those that see a
-/// voxel.
+/// One point per lane: rotated into the map frame (q), and the cells of those that see a voxel.
 struct Sight {
   F q[3];
   F p[3];  // q translated, relative to the map's origin
@@ -173,11 +173,20 @@ inline void advance(Sight & s) {
 
 /// Sums over the voxels of each lane's point, without the factors of q.
 struct PointSums {
-  F score;
-  F nearest;
-  F pairs;
+  F score = Lanes::set1(0);
+  F nearest = Lanes::set1(0);
+  F pairs = Lanes::set1(0);
   F f[3];
   F m[6];
+
+  PointSums() {
+    for (F & element : f) {
+      element = Lanes::set1(0);
+    }
+    for (F & element : m) {
+      element = Lanes::set1(0);
+    }
+  }
 };
 
 template<bool by_radius>
@@ -254,18 +263,10 @@ inline void add_points(const Sight & s, const PointSums & p, F (&sums)[sum_count
   }
 }
 
-/// Moves the lanes' sums to double precision. Adds them in halves, which the compiler does in
-/// registers.
+/// Moves the lanes' sums to double precision.
 inline void drain(F (&sums)[sum_count], TangentSums & out) {
   for (size_t i = 0; i < sum_count; ++i) {
-    float lanes[Lanes::width];
-    Lanes::store(lanes, sums[i]);
-    for (size_t half = Lanes::width / 2; half > 0; half /= 2) {
-      for (size_t lane = 0; lane < half; ++lane) {
-        lanes[lane] += lanes[lane + half];
-      }
-    }
-    out.of[i] += static_cast<double>(lanes[0]);
+    out.of[i] += static_cast<double>(Lanes::sum(sums[i]));
     sums[i] = Lanes::set1(0);
   }
 }
@@ -275,12 +276,15 @@ TangentSums run(
   const MapView & map, const ScanView & scan, const Constants & c, size_t bin, Find find) {
   // Single precision suffices for the terms, but not for sums of very many of them.
   constexpr size_t groups_per_drain = 32;
-  F sums[sum_count] = {};
+  F sums[sum_count];
+  for (F & sum : sums) {
+    sum = Lanes::set1(0);
+  }
   TangentSums out;
   size_t undrained = 0;
   for (size_t number = bin; number < scan.used; number += bin_count) {
     Sight sight = look(map, scan, c, scan.group(number) * group_points, find);
-    PointSums points = {};
+    PointSums points;
     while (sight.cell_count > 0) {
       add_voxels<by_radius>(map, c, sight, points);
       advance(sight);

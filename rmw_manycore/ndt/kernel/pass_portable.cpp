@@ -21,7 +21,7 @@ struct Register {
     std::memcpy(&f, at, sizeof f);
     return f;
   }
-  static void store(float * at, F f) { std::memcpy(at, &f, sizeof f); }
+  static float sum(F f) { return (f[0] + f[2]) + (f[1] + f[3]); }
   static F set1(float f) { return F{f, f, f, f}; }
   static I to_int(F f) { return __builtin_convertvector(f, I); }
   static F to_float(I i) { return __builtin_convertvector(i, F); }

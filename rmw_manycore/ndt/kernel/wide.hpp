@@ -24,10 +24,7 @@ struct Wide {
   using M = Two<typename Half::M>;
 
   static F load(const float * at) { return {Half::load(at), Half::load(at + Half::width)}; }
-  static void store(float * at, const F & f) {
-    Half::store(at, f.low);
-    Half::store(at + Half::width, f.high);
-  }
+  static float sum(const F & f) { return Half::sum(f.low + f.high); }
   static F set1(float f) { return {Half::set1(f), Half::set1(f)}; }
   static I to_int(const F & f) { return {Half::to_int(f.low), Half::to_int(f.high)}; }
   static F to_float(const I & i) { return {Half::to_float(i.low), Half::to_float(i.high)}; }
