@@ -27,9 +27,9 @@
  * BUG 7: the epoch raised before the mark
  * BUG 8: the thread takes the marks before it reads the epoch
  * BUG 9: what a publisher leaves to the thread is not marked
- * BUG 10: a callback that is set anew is not looked at until it is marked
+ * BUG 10 (reversed): a callback that is set anew is not looked at until it is marked
  * BUG 11 PUBLISHERS=1 MESSAGES=1 OTHER=1: no look after a publisher met a callback being set
- * BUG 12 PUBLISHERS=1 MESSAGES=1 OTHER=1: a thread that clears a callback waits for its turn
+ * BUG 12 PUBLISHERS=1 MESSAGES=1 OTHER=1 (reversed): a thread that clears a callback waits for its turn
  * BUG 13 PUBLISHERS=1 MESSAGES=1 OTHER=1: a callback cleared without its mutex
  * BUG 14 PUBLISHERS=1 MESSAGES=1 OTHER=1: earlier messages reported without the turn
  */

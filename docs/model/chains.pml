@@ -17,8 +17,8 @@
  * BUG 4 (reversed): incarnation not incremented when the slot is reused
  * BUG 5: a repair links by slot, not by age
  * BUG 6 (reversed): where an endpoint has left, the walk continues with the new incarnation of its slot
- * BUG 7: a repair empties the bucket first
- * BUG 8: a repair stores the bucket before the links
+ * BUG 7 (reversed): a repair empties the bucket first
+ * BUG 8 (reversed): a repair stores the bucket before the links
  */
 #define YOUNGEST 0
 #define OLDEST 3

@@ -20,7 +20,7 @@
  * BUG 3: publisher renews its list before its phase is odd
  * BUG 4: receive thread: no fence between phase and the load of changes
  * BUG 5: phases checked before the row is closed
- * BUG 6: changes not raised
+ * BUG 6 (reversed): changes not raised
  * BUG 7: a closed publisher's phase is waited for
  * BUG 8: a new receive thread does not end the phase of its predecessor
  * BUG 9: publisher's phase is even before its last push

@@ -23,11 +23,11 @@
  * BUG 2: a lock whose owner has ended is taken over by a store
  * BUG 3 GUEST=1 TWO=0: a ticket names the badge alone
  * BUG 4: an owner is judged by its line alone
- * BUG 5: an owner is judged by its badge alone
+ * BUG 5 (reversed): an owner is judged by its badge alone
  * BUG 6 GUEST=1 TWO=0: a ticket of a predecessor in the own badge is waited for
  * BUG 7 GUEST=1 TWO=0: the guest badge is held without the lock of the file
  * BUG 8 GUEST=1 TWO=0: the lock of the file is given back before the badge
- * BUG 9 GUEST=0 TWO=1: threads of a process wait for each other with the badge, not before it
+ * BUG 9 GUEST=0 TWO=1 (reversed): threads of a process wait for each other with the badge, not before it
  */
 #define THREADS 5
 #define FIRST 0    /* process 0, number 1 */

@@ -33,7 +33,7 @@
  * BUG 16 GRAPH=1 OWN=1: process marked as watching only after the entities were checked
  * BUG 17 GRAPH=1 OWN=1: mark loaded before the hint is pushed
  * BUG 18 GRAPH=1 OWN=1: a thread that forgets what it waits for takes the mark off its process
- * BUG 19 GRAPH=0 OWN=1: a thread forgets a word while another one begins to share it
+ * BUG 19 GRAPH=0 OWN=1 (reversed): a thread forgets a word while another one begins to share it
  */
 #define EPOCH(w) (w)
 #define SLEEPERS(w) (2 + (w))
