@@ -40,7 +40,7 @@ struct Register {
   static F fma(F a, F b, F c) { return _mm256_fmadd_ps(a, b, c); }
   static F min(F a, F b) { return _mm256_min_ps(a, b); }
   static F max(F a, F b) { return _mm256_max_ps(a, b); }
-  static M at_most(F a, F b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
+  static M less_equal(F a, F b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
   static M equal(I a, int32_t i) {
     return reinterpret_cast<M>(a == reinterpret_cast<I>(_mm256_set1_epi32(i)));
   }

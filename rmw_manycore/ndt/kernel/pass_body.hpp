@@ -9,7 +9,7 @@
 //   to_int, to_float      truncating, exact
 //   fma(a, b, c)          a * b + c, fused where the CPU can
 //   min, max              the second operand where one is not a number
-//   at_most(a, b)         mask of the lanes where a <= b
+//   less_equal(a, b)      mask of the lanes where a <= b
 //   equal(a, i)           mask of the lanes of integers that are i
 //   bits(m)               lane i of a mask as bit i
 //   only(m, f)            f in the lanes of a mask, else 0
@@ -69,7 +69,7 @@ inline F exp2_negative(const F & x) {
   p = Lanes::fma(p, r, Lanes::set1(2.4022651e-1F));
   p = Lanes::fma(p, r, Lanes::set1(6.9314718e-1F));
   p = Lanes::fma(p, r, Lanes::set1(1));
-  return Lanes::only(Lanes::at_most(Lanes::set1(-126), x), Lanes::shift_exponent(p, n));
+  return Lanes::only(Lanes::less_equal(Lanes::set1(-126), x), Lanes::shift_exponent(p, n));
 }
 
 /// Lanes whose points lie in one cell, and so see the same voxels: on average a group of recorded
@@ -171,6 +171,13 @@ inline void advance(Sight & s) {
   }
 }
 
+template<size_t count>
+inline void clear(F (&sums)[count]) {
+  for (F & sum : sums) {
+    sum = Lanes::set1(0);
+  }
+}
+
 /// Sums over the voxels of each lane's point, without the factors of q.
 struct PointSums {
   F score = Lanes::set1(0);
@@ -180,12 +187,8 @@ struct PointSums {
   F m[6];
 
   PointSums() {
-    for (F & element : f) {
-      element = Lanes::set1(0);
-    }
-    for (F & element : m) {
-      element = Lanes::set1(0);
-    }
+    clear(f);
+    clear(m);
   }
 };
 
@@ -198,7 +201,7 @@ inline void add_voxels(
   F weight = v[3];
   if (by_radius) {
     const F squared = Lanes::fma(x[0], x[0], Lanes::fma(x[1], x[1], x[2] * x[2]));
-    const Lanes::M near = Lanes::at_most(squared, c.squared_size);
+    const Lanes::M near = Lanes::less_equal(squared, c.squared_size);
     if (Lanes::bits(near) == 0) {
       return;
     }
@@ -277,9 +280,7 @@ TangentSums run(
   // Single precision suffices for the terms, but not for sums of very many of them.
   constexpr size_t groups_per_drain = 32;
   F sums[sum_count];
-  for (F & sum : sums) {
-    sum = Lanes::set1(0);
-  }
+  clear(sums);
   TangentSums out;
   size_t undrained = 0;
   for (size_t number = bin; number < scan.used; number += bin_count) {

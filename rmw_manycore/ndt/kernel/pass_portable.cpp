@@ -32,7 +32,7 @@ struct Register {
   }
   static F min(F a, F b) { return choose(a < b, a, b); }
   static F max(F a, F b) { return choose(a > b, a, b); }
-  static M at_most(F a, F b) { return a <= b; }
+  static M less_equal(F a, F b) { return a <= b; }
   static M equal(I a, int32_t i) { return a == i; }
   static uint32_t bits(M m) {
     const I bit = m & I{1, 2, 4, 8};

@@ -37,8 +37,8 @@ struct Wide {
   static F max(const F & a, const F & b) {
     return {Half::max(a.low, b.low), Half::max(a.high, b.high)};
   }
-  static M at_most(const F & a, const F & b) {
-    return {Half::at_most(a.low, b.low), Half::at_most(a.high, b.high)};
+  static M less_equal(const F & a, const F & b) {
+    return {Half::less_equal(a.low, b.low), Half::less_equal(a.high, b.high)};
   }
   static M equal(const I & a, int32_t i) { return {Half::equal(a.low, i), Half::equal(a.high, i)}; }
   static uint32_t bits(const M & m) {
