@@ -78,7 +78,7 @@ def view(start):
         assert program.stop() == 0, program
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def chromium(tmp_path_factory):
     from support.processes.browser import Browser
 

@@ -7,8 +7,10 @@ from typing import Any
 
 import pytest
 
-# One worker runs all tests of files with these prefixes: they share an expensive fixture.
-TOGETHER = ("tests/integration/test_install", "tests/integration/test_interface_build.py")
+# One worker runs all tests of files with one of these prefixes: they share an expensive fixture.
+TOGETHER = tuple(
+    f"tests/integration/test_{name}" for name in ("install", "interface_build.py", "view_")
+)
 # Begun first: one that takes a minute and begins last keeps the other workers waiting.
 FIRST = ("tests/integration/test_doc_scripts.py", *TOGETHER)
 
