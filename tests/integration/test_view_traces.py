@@ -105,5 +105,6 @@ def test_what_cannot_be_shown_is_refused(manycore, simulated: Path, tmp_path: Pa
         (twice, 2, "--once draws one --file"),
         (("--file", simulated, "--platform", "other"), 2, "--platform is for a platform"),
         (("--file", simulated, "--period", "1"), 2, "--period is for a platform"),
+        (("--once", "-o", tmp_path / "chip.svg"), 2, "--port is for a page"),
     ):
         assert text in manycore("view", "--port", "0", *words, status=status), words

@@ -79,7 +79,9 @@ def command(
     if output is not None and len(files) > 1:
         raise click.UsageError("--once draws one --file")
     if files:
-        _refuse_options_of_a_platform()
+        _refuse("is for a platform, not for --file", platform="--platform", period_s="--period")
+    if once:
+        _refuse("is for a page, not for --once", port="--port", opens="--open")
     if output is None:
         require_installed(WEB_SERVER)
     runs = [_run_in(file) for file in files]
@@ -106,11 +108,12 @@ def command(
             serve(platform, listener, period_s)
 
 
-def _refuse_options_of_a_platform() -> None:
+def _refuse(why: str, **options: str) -> None:
+    """Raise an error if one of the options, by the name of its parameter, was given."""
     context = click.get_current_context()
-    for option, name in (("--platform", "platform"), ("--period", "period_s")):
+    for name, option in options.items():
         if context.get_parameter_source(name) == ParameterSource.COMMANDLINE:
-            raise click.UsageError(f"{option} is for a platform, not for --file")
+            raise click.UsageError(f"{option} {why}")
 
 
 def _run_in(file: Path) -> TraceRun:
