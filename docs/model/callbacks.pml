@@ -3,42 +3,47 @@
  * Question: is each message reported to its callback, though a publisher of the same context spares
  * the thread that calls callbacks, and never waits, and the thread looks only at what is marked?
  * Does a thread that holds a lock of the user destroy an entity, while another one's callback waits
- * for that lock, and does no callback run that was cleared, nor two at the same time?
+ * for that lock, and does no callback run that was cleared, nor two at the same time? Does the
+ * thread end when it is told to?
  *
  * Follows Outbox::publish, WakeWords::mark_arrival, CallbackMarks, CallbackThread::spared, ::report,
- * ::run and ::remove, and Callback::set, with publishers, the thread, and one that sets the callback
- * meanwhile. A publisher with no callback in sight may as well be another process. What they share
- * is guarded by a mutex or changed by locked instructions, so store buffers are not modelled. A
- * callback may publish itself, and a subscription may need a look that would wait for another
- * thread.
+ * ::run, ::stop and ::remove, and Callback::set, with publishers, the thread, and one that sets the
+ * callback meanwhile. What they share is guarded by a mutex or changed by locked instructions, so
+ * store buffers are not modelled. A callback may publish itself, and a subscription may need a look
+ * that would wait for another thread.
+ * ELSEWHERE=1: the publishers' process has no callback in sight.
  * OTHER=1: the callback is replaced, too; it takes a lock of the user, and a further thread that
  * holds this lock destroys another entity.
  *
- * RUN PUBLISHERS=2 MESSAGES=1 OTHER=0
- * RUN PUBLISHERS=1 MESSAGES=1 OTHER=1
- * RUN PUBLISHERS=2 MESSAGES=2 OTHER=0 (long)
+ * RUN PUBLISHERS=2 MESSAGES=1 OTHER=0 ELSEWHERE=0
+ * RUN PUBLISHERS=1 MESSAGES=1 OTHER=1 ELSEWHERE=0
+ * RUN PUBLISHERS=1 MESSAGES=2 OTHER=0 ELSEWHERE=1
+ * RUN PUBLISHERS=2 MESSAGES=2 OTHER=0 ELSEWHERE=0 (long)
  *
  * BUG 1: a publisher that does not get its turn leaves it at that
  * BUG 2: the thread reads the epoch after it has looked
- * BUG 3: the word is spared though no callback was in sight
+ * BUG 3 PUBLISHERS=1 MESSAGES=2 OTHER=0 ELSEWHERE=1: the word is spared though no callback was in sight
  * BUG 4: a message that a callback publishes is not left to the thread
  * BUG 5: a look that would wait is not left to the thread
- * BUG 6: watchers added after the thread has looked
- * BUG 7: the epoch raised before the mark
+ * BUG 6 PUBLISHERS=1 MESSAGES=2 OTHER=0 ELSEWHERE=1: watchers added after the thread has looked
+ * BUG 7 PUBLISHERS=1 MESSAGES=2 OTHER=0 ELSEWHERE=1: the epoch raised before the mark
  * BUG 8: the thread takes the marks before it reads the epoch
  * BUG 9: what a publisher leaves to the thread is not marked
  * BUG 10 (reversed): a callback that is set anew is not looked at until it is marked
- * BUG 11 PUBLISHERS=1 MESSAGES=1 OTHER=1: no look after a publisher met a callback being set
- * BUG 12 PUBLISHERS=1 MESSAGES=1 OTHER=1 (reversed): a thread that clears a callback waits for its turn
- * BUG 13 PUBLISHERS=1 MESSAGES=1 OTHER=1: a callback cleared without its mutex
- * BUG 14 PUBLISHERS=1 MESSAGES=1 OTHER=1: earlier messages reported without the turn
+ * BUG 11 PUBLISHERS=1 MESSAGES=1 OTHER=1 ELSEWHERE=0 (reversed): a thread that clears a callback waits for its turn
+ * BUG 12 PUBLISHERS=1 MESSAGES=1 OTHER=1 ELSEWHERE=0: a callback cleared without its mutex
+ * BUG 13 PUBLISHERS=1 MESSAGES=1 OTHER=1 ELSEWHERE=0: earlier messages reported without the turn
+ * BUG 14: the thread reads the epoch after it has released the lists
  */
 
 bool turn;               /* CallbackThread::turn_ */
 bool locked;             /* the mutex of the callback */
 bool is_set;             /* the callback; guarded by its mutex */
-bool is_listed;          /* guarded by CallbackThread::mutex_, as is the next one */
+bool lists;              /* CallbackThread::mutex_, which guards the next four */
+bool is_listed;
+bool is_another_listed;  /* so the thread runs already */
 bool changed;            /* the lists, since the thread looked */
+bool stopping;
 bool in_sight;           /* whether the bucket of the topic has some callback */
 bool watched;            /* whether the subscription's watchers have the thread's word */
 bool marked;             /* the subscription */
@@ -107,7 +112,7 @@ inline report_or_leave() {
         :: else
         fi;
         locked = false
-      :: locked -> is_done = (BUG == 11)
+      :: locked -> is_done = false
       fi
     :: !is_listed
     fi;
@@ -125,7 +130,7 @@ proctype publisher() {
   bool spares, is_done;
   do
   :: sent < MESSAGES ->
-    spares = in_sight;
+    spares = in_sight && !ELSEWHERE;
     arrived++;
     if
     :: spares -> report_or_leave()
@@ -151,12 +156,28 @@ proctype publisher() {
 
 inline add() {
   in_sight = true;
+  lock(lists);
   d_step { is_listed = true; changed = true };
-  raise_epoch()
+  raise_epoch();
+  lists = false
+}
+
+inline look_at_all() {
+  lock(lists);
+  changed = true;
+  raise_epoch();
+  lists = false
+}
+
+inline stop() {
+  lock(lists);
+  stopping = true;
+  raise_epoch();
+  lists = false
 }
 
 inline set() {
-#if BUG == 14
+#if BUG == 13
   has_turn = false;
 #else
   atomic { has_turn = !turn; turn = true };
@@ -167,12 +188,12 @@ inline set() {
   :: is_listed
   fi;
   is_set = true;
-#if BUG == 14
+#if BUG == 13
   look();
 #else
   if
   :: has_turn -> look()
-  :: else -> d_step { changed = true }; raise_epoch()
+  :: else -> look_at_all()
   fi;
 #endif
   locked = false;
@@ -192,15 +213,15 @@ proctype setter() {
 /* A thread that holds a lock of the user. */
 proctype destroyer() {
   lock(users);
-#if BUG == 12
+#if BUG == 11
   lock(turn);
-#elif BUG != 13
+#elif BUG != 12
   lock(other_locked);
 #endif
   other_is_set = false;
-#if BUG == 12
+#if BUG == 11
   turn = false;
-#elif BUG != 13
+#elif BUG != 12
   other_locked = false;
 #endif
   assert(!in_other);
@@ -242,10 +263,13 @@ inline look_at_marked() {
 proctype thread() {
   byte n, seen;
   bool is_marked, is_new;
-end_without_callback:
-  is_listed;
 again:
-  atomic { is_new = changed; changed = false };
+  atomic { (is_listed || is_another_listed || stopping) && !lists -> lists = true };
+  if
+  :: stopping -> lists = false; goto ended
+  :: else
+  fi;
+  d_step { is_new = changed; changed = false };
 #if BUG != 6
   watched = watched || is_new;
 #endif
@@ -255,31 +279,37 @@ again:
 #if BUG != 6
   is_new = false;
 #endif
-#if BUG == 2
-  take_marks();
-  look_at_marked();
+#if BUG == 14
+  lists = false;
   seen = epoch;
-#elif BUG == 8
-  take_marks();
+#elif BUG != 2 && BUG != 8
   seen = epoch;
-  look_at_marked();
+  lists = false;
 #else
-  seen = epoch;
+  lists = false;
+#endif
   take_marks();
+#if BUG == 8
+  seen = epoch;
+#endif
   look_at_marked();
+#if BUG == 2
+  seen = epoch;
 #endif
 #if BUG == 6
   watched = watched || is_new;
 #endif
   is_marked = false;
-end_asleep:
   epoch != seen;
-  goto again
+  goto again;
+ended:
+  skip
 }
 
 init {
+  bool is_stopped_asleep;
   if
-  :: in_sight = true      /* another callback, of the same bucket */
+  :: d_step { in_sight = true; is_another_listed = true }  /* of the same bucket */
   :: true
   fi;
   atomic {
@@ -296,5 +326,14 @@ init {
     :: else
     fi
   };
-  finished == PUBLISHERS + 1 + OTHER && timeout -> assert(reported == arrived)
+  finished == PUBLISHERS + 1 + OTHER;
+  if
+  :: is_stopped_asleep = true
+  :: true
+  fi;
+  if
+  :: is_stopped_asleep -> timeout -> assert(reported == arrived)
+  :: else
+  fi;
+  stop()
 }

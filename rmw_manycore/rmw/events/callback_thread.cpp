@@ -177,8 +177,8 @@ void CallbackThread::run() noexcept {
     if (looks_at_all) {
       watch_all(word);
     }
+    const uint32_t epoch = waiter.epoch();  // with the lock: add() and stop() notify with it
     lock.unlock();
-    const uint32_t epoch = waiter.epoch();
     manycore::CallbackMarks::Taken marks = manycore::CallbackMarks::everything();
     if (!looks_at_all) {
       marks = waiters_.callback_marks().take();
