@@ -80,7 +80,7 @@ lint: setup .venv/tests  ## style, types, spelling
 	! git grep -nE '^.{101,}' '*.cmake' '*CMakeLists.txt' '*.sh' .ci/run
 	$(VENV)/codespell
 
-# Without the tests, which two compilers check: parsing them would take half as long again.
+# Without the tests, which two compilers check: parsing them would nearly double its time.
 tidy: setup  ## clang-tidy with the checks of .clang-tidy
 	$(VENV)/cmake -S . -B build/tidy -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(VENV)/ninja \
 	  -DCMAKE_PREFIX_PATH=$(CURDIR)/.venv -DMANYCORE_BUILD_BENCH=ON \

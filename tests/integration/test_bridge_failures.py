@@ -18,13 +18,14 @@ from rmw_manycore_bridge.time_slice import SLICE_NS, time_slice_ns
 from rmw_manycore_py.platform.topology import HostCpu, as_host_cpu
 from rmw_manycore_py.routes.plan import Plan
 from rmw_manycore_py.routes.route import DIRECTIONS, arranged
-from support import IS_MANYCORE, MAPFILES, TESTS, TIMEOUT_S, wait_until
+from support import IS_MANYCORE, MAPFILES, TIMEOUT_S, wait_until
 from support.nodes.bridging import OUTSIDE, Bridge
 from support.nodes.speakers import say
 from support.processes.commands import example_command, manycore_command
 from support.processes.domains import domain_of
 from support.processes.inspection import has_receive_threads
 from support.processes.platforms import environment, leftovers, unique_platform
+from support.processes.preloaded import preloaded
 
 pytestmark = [
     pytest.mark.integration,
@@ -79,12 +80,8 @@ def test_a_second_signal_ends_it(bridge) -> None:
 
 
 def test_it_leaves_though_dds_never_does(bridge, tmp_path) -> None:
-    preload = tmp_path / "no_leaving.so"
-    source = TESTS / "programs" / "no_leaving.c"
-    compiler = os.environ.get("CC", "cc")
-    subprocess.run([compiler, "-shared", "-fPIC", "-o", preload, source], check=True)
     plan = Plan(bridge.platform, arranged([bridge.route("outward", "/chatter")], 1))
-    process = bridge.run_unforked(plan, "outward", LD_PRELOAD=str(preload))
+    process = bridge.run_unforked(plan, "outward", **preloaded("no_leaving", tmp_path))
     bridge.inside(say, "/chatter", {}, 0.1)
     wait_until(lambda: bridge.row("outward", "/chatter").get("state") == "ready", "it is up")
     process.signal(signal.SIGINT)

@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
 
 import pytest
 
-from support import TESTS
+from support.processes.preloaded import preloaded
 
 pytestmark = pytest.mark.integration
 
@@ -29,9 +27,5 @@ for _ in range(5):
 
 
 def test_it_ends_though_it_was_about_to_sleep(start, tmp_path) -> None:
-    preload = tmp_path / "late_unlock.so"
-    source = TESTS / "programs" / "late_unlock.c"
-    compiler = os.environ.get("CC", "cc")
-    subprocess.run([compiler, "-shared", "-fPIC", "-o", preload, source], check=True)
-    program = start([sys.executable, "-c", SHUT_DOWN], LD_PRELOAD=str(preload))
+    program = start([sys.executable, "-c", SHUT_DOWN], **preloaded("late_unlock", tmp_path))
     assert program.wait() == 0, program

@@ -6,15 +6,13 @@ They are seen through a stand-in for libtracetools: there is no LTTng session he
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-from pathlib import Path
 
 import pytest
 
-from support import IS_MANYCORE, TESTS
+from support import IS_MANYCORE
 from support.processes.commands import example_command
+from support.processes.preloaded import preloaded
 
 pytestmark = [
     pytest.mark.integration,
@@ -23,18 +21,13 @@ pytestmark = [
 
 
 @pytest.fixture(scope="module")
-def tracepoints(tmp_path_factory) -> Path:
-    library = tmp_path_factory.mktemp("tracepoints") / "tracepoints.so"
-    source = TESTS / "programs" / "tracepoints.c"
-    compiler = os.environ.get("CC", "cc")
-    subprocess.run([compiler, "-shared", "-fPIC", "-o", library, source], check=True)
-    return library
+def tracepoints(tmp_path_factory) -> dict[str, str]:
+    return preloaded("tracepoints", tmp_path_factory.mktemp("tracepoints"))
 
 
 def test_publish_and_take_have_handle_message_and_time(start, tracepoints) -> None:
-    preload = {"LD_PRELOAD": str(tracepoints)}
-    listener = start(example_command("listener"), **preload)
-    talker = start(example_command("talker"), **preload)
+    listener = start(example_command("listener"), **tracepoints)
+    talker = start(example_command("talker"), **tracepoints)
     published = talker.wait_for(r"^publish (\S+) 1 [1-9]\d{17,}$")
     assert published[1] in re.findall(r"^publisher_init (\S+) [1-9]", talker.output, re.M)
     taken = listener.wait_for(r"^take (\S+) 1 [1-9]\d{17,} 1$")
@@ -43,9 +36,8 @@ def test_publish_and_take_have_handle_message_and_time(start, tracepoints) -> No
 
 def test_requests_and_responses_have_handle_client_and_number(start, tracepoints) -> None:
     """The tracepoints that libtracetools has since Kilted."""
-    preload = {"LD_PRELOAD": str(tracepoints)}
-    lamp = start(example_command("lamp"), **preload)
-    switch = start(example_command("lamp_switch"), **preload)
+    lamp = start(example_command("lamp"), **tracepoints)
+    switch = start(example_command("lamp_switch"), **tracepoints)
     sent = switch.wait_for(r"^send_request (\S+) 1 ([1-9]\d*)$")
     assert sent[1] in re.findall(r"^client_init (\S+) [1-9]", switch.output, re.M)
     taken = lamp.wait_for(rf"^take_request (\S+) 1 [1-9]\d* {sent[2]} 1$")
