@@ -99,6 +99,10 @@ class Derivatives:
     def hessian(self) -> NDArray[np.float64]:
         """(6, 6), per m and rad."""
 
+    @property
+    def covariance(self) -> NDArray[np.float64] | None:
+        """Inverse of the negative Hessian, (6, 6); None where the score has no maximum."""
+
 class NewtonResult:
     """Where an alignment ended."""
 
@@ -128,7 +132,8 @@ class SerialMatcher:
     `maps`: levels of one map, coarsest first; a scan is aligned to each, from where the one before
     has led, from `maps[first]` on. Scores and derivatives are those of the last but `polishing`
     maps: the latter only refine the pose. An alignment ends before these and the scored map unless
-    it begins there with a score above `surpassed`.
+    it begins there with a score above `surpassed`. Few points' fit has to exceed `least_fit` for
+    the pose to be refined.
     """
 
     def __init__(self, options: MatchOptions) -> None: ...
@@ -141,6 +146,7 @@ class SerialMatcher:
         first: int = 0,
         polishing: int = 0,
         surpassed: float = ...,
+        least_fit: float = ...,
     ) -> NewtonResult: ...
     def evaluate(
         self,
@@ -211,6 +217,7 @@ class WorkerGroup:
         first: int = 0,
         polishing: int = 0,
         surpassed: float = ...,
+        least_fit: float = ...,
     ) -> NewtonResult: ...
     def evaluate(
         self,

@@ -30,4 +30,6 @@ Search = Literal["radius", "direct7", "direct1"]
 VoxelCovariance = Literal["pcl", "autoware", "pclomp"]
 StepRule = Literal["trust_region", "clamped", "more_thuente"]
 Behaviour = Literal["robust", "autoware"]
-Outcome = Literal["converged", "iteration_limit", "no_overlap", "degenerate", "surpassed"]
+Outcome = Literal[
+    "converged", "iteration_limit", "no_overlap", "degenerate", "surpassed", "unfinished"
+]

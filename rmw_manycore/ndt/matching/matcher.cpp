@@ -80,9 +80,13 @@ public:
     }
     if (!is_surpassed(result)) {
       result = approach(result.pose);
-      const Derivatives first = result.first;
-      finish(result);
-      result.first = first;
+      if (fits_too_little(result)) {
+        result.outcome = Outcome::unfinished;
+      } else {
+        const Derivatives first = result.first;
+        finish(result);
+        result.first = first;
+      }
     }
     result.iterations = iterations_;
     result.path = path_;
@@ -101,6 +105,11 @@ private:
     }
     result.outcome = Outcome::surpassed;
     return true;
+  }
+
+  bool fits_too_little(const NewtonResult & found) const {
+    return found.outcome == Outcome::converged &&
+           found.at.nearest <= levels_.least_fit * static_cast<double>(found.at.scan_points);
   }
 
   /// Aligns to the scored level; `first` of the result is that of the first steps.
@@ -238,7 +247,7 @@ void check_levels(const Levels & levels) {
 
 Descent descent_of(const Levels & levels) {
   check_levels(levels);
-  Descent out{{}, levels.polishing, levels.surpassed};
+  Descent out{{}, levels.polishing, levels.surpassed, levels.least_fit};
   for (size_t i = levels.first; i < levels.maps.size(); ++i) {
     out.maps.push_back(levels.maps[i]->view());
   }

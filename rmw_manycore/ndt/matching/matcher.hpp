@@ -23,6 +23,9 @@ struct Levels {
   /// Score that other starts reached on the scored level at the end of the coarser ones; this one
   /// is not followed further unless it reaches more.
   double surpassed = no_score;
+  /// Fit (sum of the points' best scores, per point of the scan) that few points have to exceed for
+  /// the pose to be refined.
+  double least_fit = no_score;
 
   static constexpr double no_score = -std::numeric_limits<double>::infinity();
 };
@@ -53,6 +56,7 @@ struct Descent {
   std::vector<MapView> maps;
   size_t polishing = 0;
   double surpassed = Levels::no_score;
+  double least_fit = Levels::no_score;
 
   /// The map of scores and derivatives.
   const MapView & scored() const { return maps[maps.size() - polishing - 1]; }

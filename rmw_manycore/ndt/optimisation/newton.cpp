@@ -66,6 +66,15 @@ Vector6 newton_step(const Matrix6 & hessian, const Vector6 & gradient) {
   return inverse * gradient;
 }
 
+std::optional<Matrix6> laplace_covariance(const Matrix6 & hessian) {
+  const Eigen<6> eigen = symmetric_eigen(hessian);
+  const auto & values = eigen.values;
+  if (!std::all_of(values.begin(), values.end(), [](double value) { return value < 0; })) {
+    return std::nullopt;
+  }
+  return eigen.map([](double value) { return -1 / value; });
+}
+
 NewtonResult maximise(
   const Pose6 & guess, const MatchOptions & options, const Evaluate & evaluate) {
   NewtonResult result;

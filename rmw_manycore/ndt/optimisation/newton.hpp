@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "ndt/common/options.hpp"
 #include "ndt/kernel/derivatives.hpp"
@@ -17,6 +18,7 @@ enum class Outcome : uint32_t {
   no_overlap,       ///< no point has a voxel in range at the resulting pose
   degenerate,       ///< the derivatives are not finite, or all zero
   surpassed,        ///< the coarser levels led to a place where another start was better
+  unfinished,       ///< few points converged, but fit too little for the rest to be worth while
 };
 
 /// Poses of an alignment: the guess and the pose after each step. Steps beyond the capacity are not
@@ -52,5 +54,9 @@ NewtonResult maximise(const Pose6 & guess, const MatchOptions & options, const E
 
 /// Newton's step: the solution s of H s = -g, without the directions in H's null space.
 Vector6 newton_step(const Matrix6 & hessian, const Vector6 & gradient);
+
+/// Covariance of a pose by Laplace's approximation: the inverse of the negative Hessian. None where
+/// the score has no maximum.
+std::optional<Matrix6> laplace_covariance(const Matrix6 & hessian);
 
 }  // namespace manycore::ndt

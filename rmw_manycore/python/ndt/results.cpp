@@ -4,6 +4,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <optional>
 #include <vector>
 
 #include "ndt/optimisation/newton.hpp"
@@ -21,6 +22,15 @@ using View = nb::ndarray<nb::numpy, const double, nb::shape<Sizes...>, nb::c_con
 View<6> gradient(const Derivatives & d) { return View<6>(d.gradient.data(), {6}); }
 
 View<6, 6> hessian(const Derivatives & d) { return View<6, 6>(d.hessian.data(), {6, 6}); }
+
+/// None where the score has no maximum.
+nb::object covariance(const Derivatives & d) {
+  const std::optional<Matrix6> found = laplace_covariance(d.hessian);
+  if (!found) {
+    return nb::none();
+  }
+  return View<6, 6>(found->data(), {6, 6}).cast(nb::rv_policy::copy);
+}
 
 nb::object pose(const NewtonResult & result) {
   const Pose4x4 matrix = to_matrix(result.pose);
@@ -48,7 +58,8 @@ void bind_results(nb::module_ & module) {
     .def_ro("points", &Derivatives::points)
     .def_ro("scan_points", &Derivatives::scan_points)
     .def_prop_ro("gradient", &gradient, nb::rv_policy::reference_internal)
-    .def_prop_ro("hessian", &hessian, nb::rv_policy::reference_internal);
+    .def_prop_ro("hessian", &hessian, nb::rv_policy::reference_internal)
+    .def_prop_ro("covariance", &covariance);
   nb::class_<NewtonResult>(module, "NewtonResult")
     .def_prop_ro("outcome", word<NewtonResult>(&NewtonResult::outcome))
     .def_ro("iterations", &NewtonResult::iterations)

@@ -29,8 +29,8 @@ struct Words<ndt::StepRule> {
 template<>
 struct Words<ndt::Outcome> {
   static constexpr const char * name = "outcome";
-  static constexpr std::array<const char *, 5> all = {
-    "converged", "iteration_limit", "no_overlap", "degenerate", "surpassed"};
+  static constexpr std::array<const char *, 6> all = {
+    "converged", "iteration_limit", "no_overlap", "degenerate", "surpassed", "unfinished"};
 };
 
 }  // namespace manycore::python

@@ -18,6 +18,7 @@ WHY: dict[Outcome, str] = {
     "no_overlap": "no point of the scan lies in the map: wrong guess or wrong map",
     "degenerate": "the scan does not constrain the pose: too few points, or too far from the map",
     "surpassed": "another guess led to a better place",
+    "unfinished": "",
 }
 
 
@@ -71,6 +72,8 @@ class Alignment:
     :param explained_score: score of what the map can contradict (evidence.py); 0 if not computed.
     :param looks: number of alignments that this one is the best of.
     :param is_refused: whether nothing was aligned.
+    :param is_unfinished: whether only few points were aligned, as they fit too little; the matcher
+        finishes what it returns.
     :param guesses_around: (4, 4) poses around the result used for its covariance, if any.
     :param results_around: (4, 4) results of alignments from those poses, if any.
     """
@@ -91,6 +94,7 @@ class Alignment:
     explained_score: float = 0.0
     looks: int = 1
     is_refused: bool = False
+    is_unfinished: bool = False
     guesses_around: tuple[Pose, ...] = ()
     results_around: tuple[Pose, ...] = ()
 
@@ -102,16 +106,16 @@ class Alignment:
         points has no maximum.
         """
         score = Score.of(found.at)
-        values, vectors = np.linalg.eigh(-found.at.hessian)
-        is_maximum = bool(values[0] > 0)
+        by_curvature = found.at.covariance
+        is_maximum = by_curvature is not None
         ended = found.outcome
-        outcome = "degenerate" if ended == "converged" and not is_maximum else ended
+        is_end = ended in ("converged", "unfinished")
+        outcome = "degenerate" if is_end and not is_maximum else ended
         covariance: Matrix6 = np.diag(options.fixed_pose_variances)
-        by_curvature: Matrix6 = np.zeros((6, 6))
-        if is_maximum:
-            by_curvature = (vectors / values) @ vectors.T
-            if options.pose_covariance == "laplace":
-                covariance = by_curvature
+        if by_curvature is None:
+            by_curvature = np.zeros((6, 6))
+        elif options.pose_covariance == "laplace":
+            covariance = by_curvature
         return cls(
             T_map_sensor=found.pose,
             covariance=covariance,
@@ -119,12 +123,13 @@ class Alignment:
             score=score.score,
             transform_probability=score.transform_probability,
             nearest_voxel_likelihood=score.nearest_voxel_likelihood,
-            converged=outcome == "converged",
+            converged=is_end and is_maximum,
             why=WHY[outcome],
             first=Score.of(found.first),
             path=found.path,
             share_in_map=score.points_in_map / max(found.at.scan_points, 1),
             is_degenerate=not is_maximum or ended in ("no_overlap", "surpassed"),
+            is_unfinished=ended == "unfinished",
             xy_spread_m2=by_curvature[:2, :2] * found.at.scan_points,
         )
 

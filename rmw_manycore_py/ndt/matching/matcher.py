@@ -208,12 +208,24 @@ class Matcher:
         is_far = bool(self.options.second_look_levels)
         again = partial(self._looked_again, convinces=self._convinces)
         looks = (again, self._looked_closer, self._looked_around)
+        if self.options.coarse_levels:
+            least_fit = CONVINCING_SHARE * self._require_map().own_likelihood
+            asked = replace(asked, least_fit=least_fit)
         found = self._weighed(asked, self._aligned(asked))
         for look in looks if is_far else (self._looked_closer,):
             if found.is_refused or self._convinces(found):
                 break
             found = look(found, asked)
-        return found
+        return self._finished(found, asked)
+
+    def _finished(self, found: Alignment, asked: Question) -> Alignment:
+        """Return a result that all points refine."""
+        if not found.is_unfinished:
+            return found
+        there = replace(asked, guess=found.T_map_sensor, least_fit=-np.inf)
+        done = self._aligned(there, is_close=True).continued_from(found)
+        explained = found.explained_score
+        return replace(done, first=found.first, looks=found.looks, explained_score=explained)
 
     def _weighed(self, asked: Question, found: Alignment) -> Alignment:
         """Return a result that convinces by its fit, else with its explained score."""
@@ -245,6 +257,7 @@ class Matcher:
         search_map = self._require_map().search_map
         if search_map is None:
             return first
+        first = self._finished(first, asked)  # the search believes its roll and pitch
         roll, pitch, _ = poses.to_rpy(first.T_map_sensor)
         yaw = poses.to_rpy(asked.guess)[2]
         centre = poses.from_xyz_rpy(asked.guess[:3, 3], (roll, pitch, yaw))
@@ -272,7 +285,8 @@ class Matcher:
         begin_ns = time.monotonic_ns()
         with translate_native_errors(CANNOT_WORK):
             result = self._native.align(
-                *(levels, level.points, level.guess, asked.position, first, polishing, surpassed)
+                *(levels, level.points, level.guess, asked.position),
+                *(first, polishing, surpassed, asked.least_fit),
             )
         if self.on_aligned is not None:
             self.on_aligned(begin_ns)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from rmw_manycore_py.ndt.geometry.arrays import (
@@ -21,11 +22,15 @@ from rmw_manycore_py.ndt.matching.options import MatcherOptions
 
 @dataclass(frozen=True)
 class Question:
-    """A scan (N, 3), its guess (4, 4), and the position of the regularization pose."""
+    """A scan (N, 3), its guess (4, 4), and the position of the regularization pose.
+
+    :param least_fit: fit up to which a result remains unfinished.
+    """
 
     scan: ScanPoints
     guess: Pose
     position: Position | None
+    least_fit: float = -np.inf
 
 
 def question_of(

@@ -47,7 +47,7 @@ def test_a_second_look_finds_home_from_farther_off(matcher: SerialMatcher) -> No
     only_near.set_map(VoxelMap.from_points(WORLD, only_near.options))
     near = only_near.align(SCAN, FAR)
     assert near.looks == 3  # two of them closer
-    assert numbers(replace(near, looks=1)) == numbers(matcher.align_once(SCAN, FAR))
+    assert errors(near.T_map_sensor, TRUE)[0] > 0.5
 
 
 def test_a_convincing_result_is_not_looked_at_again(matcher: SerialMatcher) -> None:
@@ -130,6 +130,40 @@ def test_what_a_start_leads_to_is_aligned_no_further_where_another_was_better() 
     assert (surpassed.outcome, surpassed.first.score) == ("surpassed", at_start)
     assert 0 < surpassed.iterations < followed.iterations
     assert Alignment.of(surpassed, OPTIONS).is_degenerate
+
+
+def test_a_result_of_few_points_that_fits_too_little_is_not_refined() -> None:
+    matcher = _ndt.SerialMatcher(match_options(OPTIONS))
+    scan = scan_points(np.tile(SCAN, (-(-10_000 // len(SCAN)), 1)))
+
+    def aligned(least_fit: float) -> _ndt.NewtonResult:
+        return matcher.align(MAP.levels, scan, NEAR, None, 1, 1, -np.inf, least_fit)
+
+    finished = aligned(-np.inf)
+    assert finished.at.scan_points == len(scan)
+    few = aligned(1e9)
+    assert few.at.scan_points < len(scan) / 2
+    assert (few.outcome, few.first.score) == ("unfinished", finished.first.score)
+    fit = few.at.nearest / few.at.scan_points
+    assert aligned(fit + 1e-9).outcome == "unfinished"
+    alike = aligned(fit - 1e-9)
+    assert (alike.outcome, alike.pose.tolist()) == ("converged", finished.pose.tolist())
+
+
+@pytest.mark.parametrize("wide_levels", [(), OPTIONS.wide_levels], ids=["closer", "search"])
+def test_what_is_found_is_refined_though_nothing_convinces(wide_levels: tuple[float, ...]) -> None:
+    """Half of the points are of what the map does not have."""
+    matcher = SerialMatcher(replace(OPTIONS, wide_levels=wide_levels))
+    matcher.set_map(VoxelMap.from_points(WORLD, matcher.options))
+    rng = np.random.default_rng(6)
+    traffic = rng.uniform((-20, -6, -1.5), (20, 6, 3), (len(SCAN), 3)).astype(np.float32)
+    scan = np.concatenate([np.tile(SCAN, (4, 1)), np.tile(traffic, (4, 1))])
+    assert len(scan) > 8192  # few points approach the pose
+    found = matcher.align(scan, NEAR)
+    assert found.looks > 1
+    assert not found.is_unfinished
+    assert found.score == pytest.approx(matcher.score(scan, found.T_map_sensor).score)
+    assert len(found.path) == found.iterations + 1
 
 
 def test_wide_levels_come_first_in_a_second_look(matcher: SerialMatcher) -> None:

@@ -86,7 +86,7 @@ def test_where_what_no_vehicle_has_misleads_the_guess_itself_leads_home():
     assert poses.distance_m(aside.T_map_sensor, truth) > 1.0
     assert poses.distance_m(home.T_map_sensor, truth) < 0.1
     found = matcher.align(scan, guess)
-    assert found.T_map_sensor.tolist() == home.T_map_sensor.tolist()
+    assert found.T_map_sensor == pytest.approx(home.T_map_sensor, abs=1e-3)
     assert found.looks == 8  # the first, five of the second look, two closer
 
 
