@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.ndt import Matcher, MatcherOptions, SerialMatcher, VoxelMap, WorkerMatcher
 from rmw_manycore_py.ndt.trust.search import Region, search
 from support import wait_until
@@ -273,3 +274,12 @@ def test_a_closed_matcher_raises() -> None:
     matcher.close()
     with pytest.raises(ManycoreError, match="closed"):
         _ = matcher.worker_pids
+
+
+def test_the_workers_program_is_found_from_a_library_near_the_root(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As of `pip install --target /deps`; its files are searched for in the prefix last."""
+    monkeypatch.setattr(_ndt, "__file__", "/deps/native/_ndt.so")
+    with WorkerMatcher(OPTIONS, CPUS[:1]) as matcher:
+        assert len(matcher.worker_pids) == 1

@@ -92,9 +92,10 @@ class _Closed:
 
 
 def _worker_program() -> Path:
-    # An installation has site-packages in <prefix>/lib/pythonX.Y, a build tree next to lib.
+    # An installation has site-packages in <prefix>/lib/pythonX.Y; a build tree, and what
+    # `pip install --target` fills, is next to lib.
     here = Path(_ndt.__file__).resolve()
-    prefixes = [here.parents[5], here.parents[2], Path(sys.prefix)]
+    prefixes = [*here.parents[5:6], *here.parents[2:3], Path(sys.prefix)]
     for prefix in prefixes:
         program = prefix / "lib" / "rmw_manycore" / WORKER
         if program.exists():
