@@ -33,7 +33,7 @@ CPU, BUSIEST = "CPU time of a search", "CPU time of its busiest process and the 
 WALL = "time of a search"
 PLACE = "town of 500 m"
 RECORDED = f"recorded scans in the {PLACE}"
-SCANS, RECORDED_SCANS, SHARED_SCANS = 200, 88, 10
+SCANS, RECORDED_SCANS, SHARED_SCANS = 200, 88, 20
 SEED, OTHER_SEED = 1, 2
 RIGHT_M, RIGHT_DEG = 0.3, 1.5
 CLEARED_M = 15.0  # around the recorded drive's map
@@ -113,11 +113,16 @@ def _moved(T: Pose, shift: Matrix) -> Pose:
 
 def measure(run: Run) -> list[Result]:
     """Return shares of scans found, and times."""
-    if not run.wants(QUESTION.name):
+    parts = {PLACE: _in_town, BUSIEST: _shared, RECORDED: _beside}
+    wanted = {name: part for name, part in parts.items() if run.wants(f"{QUESTION.name}: {name}")}
+    if not wanted:
         return []
     run.note(f"{QUESTION.name}: map")
     points = town.survey(town.build_town(SEED), SEED)
-    results = [*_in_town(run, points), *_beside(run, points)]
+    results: list[Result] = []
+    for name, part in wanted.items():
+        run.note(f"{QUESTION.name}: {name}")
+        results += part(run, points)
     return [one for one in results if one.samples]
 
 
@@ -129,30 +134,34 @@ def _matcher(points: Points, cpus: Sequence[int]) -> WorkerMatcher:
 
 def _in_town(run: Run, points: Points) -> list[Result]:
     with _matcher(points, usable()) as matcher:
-        run.note(f"{QUESTION.name}: {RIGHT}")
         own = list(in_town(SEED, run.iterations(SCANS)))
         outcomes = [searched(matcher, one) for one in own]
         run.note(f"{QUESTION.name}: {FOREIGN}")
         others = [searched(matcher, one) for one in in_town(OTHER_SEED, run.iterations(SCANS) // 2)]
-        shared = own[: run.iterations(SHARED_SCANS)]
-        two = [searched(matcher, one) for one in shared]
-    with _matcher(points, usable()[:1]) as matcher:
-        run.note(f"{QUESTION.name}: {BUSIEST}")
-        one = [searched(matcher, lost) for lost in shared]
-    results = [*_outcomes(PLACE, own, outcomes)]
-    results.append(_share(f"{FOREIGN}: {PLACE}", [o.found is not None for o in others]))
-    for name, found in (("1 worker", one), (f"{len(usable())} workers", two)):
-        results.append(Result(BUSIEST, name, "s", tuple(o.busiest_s for o in found)))
-        results.append(Result(WALL, name, "s", tuple(o.wall_s for o in found)))
-    return results
+    found = _share(f"{FOREIGN}: {PLACE}", [o.found is not None for o in others])
+    return [*_outcomes(PLACE, own, outcomes), found]
+
+
+def _shared(run: Run, points: Points) -> list[Result]:
+    """Search with one worker and with all, scan by scan: the speed of a host's CPUs changes."""
+    with _matcher(points, usable()[:1]) as alone, _matcher(points, usable()) as shared:
+        matchers = {"1 worker": alone, f"{len(usable())} workers": shared}
+        found: dict[str, list[Search]] = {name: [] for name in matchers}
+        for lost in in_town(SEED, run.iterations(SHARED_SCANS)):
+            for name, matcher in matchers.items():
+                found[name].append(searched(matcher, lost))
+    return [
+        Result(question, name, "s", tuple(getattr(one, field) for one in searches))
+        for question, field in ((BUSIEST, "busiest_s"), (WALL, "wall_s"))
+        for name, searches in found.items()
+    ]
 
 
 def _beside(run: Run, points: Points) -> list[Result]:
-    run.note(f"{QUESTION.name}: {RECORDED}")
     joined, lost = recorded_in(points, run.iterations(RECORDED_SCANS))
     with _matcher(joined, usable()) as matcher:
         outcomes = [searched(matcher, one) for one in lost]
-    return list(_outcomes(RECORDED, lost, outcomes))
+    return [*_outcomes(RECORDED, lost, outcomes)]
 
 
 def _outcomes(place: str, lost: Sequence[Lost], outcomes: Sequence[Search]) -> Iterator[Result]:
