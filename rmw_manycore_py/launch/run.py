@@ -40,7 +40,8 @@ class Mode:
     """What a run was started from, and how.
 
     :param only: whether `mapfile` has only some of the file's nodes.
-    :param virtual: how long callbacks take in virtual time; None: the time is the wall clock's.
+    :param virtual: how long callbacks take in virtual time; None: as they do, if the mapfile asks
+        for virtual time, and otherwise the time is the wall clock's.
     """
 
     mapfile: Mapfile
@@ -48,6 +49,10 @@ class Mode:
     detached: bool = False
     only: bool = False
     virtual: VirtualTime | None = None
+
+    def __post_init__(self) -> None:
+        if self.virtual is None and self.mapfile.sections.clock == "virtual":
+            object.__setattr__(self, "virtual", VirtualTime(factor=1.0))
 
 
 class Run:

@@ -7,11 +7,13 @@ import os
 import signal
 import threading
 from pathlib import Path
+from queue import Queue
 
 import pytest
 
 import rmw_manycore_py as manycore
 from support import TIMEOUT_S, wait_until
+from support.nodes import timed
 from support.nodes.ros import announce
 from support.processes.commands import peer_command
 from support.processes.inspection import kill
@@ -70,6 +72,15 @@ def test_nodes_run_until_the_end_of_with(mapfile, platform: str) -> None:
     assert not Path(f"/proc/{two.pid}").exists()
     assert (active.wait(), active.stop()) == (0, 0)
     assert platform not in manycore.platforms()
+
+
+def test_a_mapfile_asks_for_virtual_time(timed_mapfile) -> None:
+    file = timed_mapfile(timed, "talker", "echo")
+    file.write_text(f"clock: virtual\n{file.read_text()}")
+    heard: Queue[str] = Queue()
+    with manycore.run(file, on_output=lambda _, line: heard.put(line)):
+        *_, at_ns = heard.get(timeout=TIMEOUT_S).split()
+    assert 0 <= int(at_ns) - 10**18 < 10**12
 
 
 def test_a_node_that_fails(mapfile) -> None:

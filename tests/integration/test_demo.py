@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from support import MAPFILES
+from support.nodes import timed
 from support.processes.commands import manycore_command
 
 pytestmark = pytest.mark.integration
@@ -49,6 +50,14 @@ def test_other_verbs_know_the_names(
     named = start(manycore_command(*verb, "three_nodes"), directory=tmp_path)
     assert named.wait() == 0, named
     assert text in named.output
+
+
+def test_a_mapfile_asks_for_virtual_time(start, timed_mapfile) -> None:
+    file = timed_mapfile(timed, "talker", "echo")
+    file.write_text(f"clock: virtual\n{file.read_text()}")
+    demo = start(manycore_command("demo", file, "--duration", "1"))
+    assert demo.wait() == 0
+    assert demo.wait_for(r"heard talker 1 \d+ (\d{9})\d{10}$")[1] == "100000000"
 
 
 def test_a_file_of_the_working_directory_wins(start, tmp_path: Path) -> None:

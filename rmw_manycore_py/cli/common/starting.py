@@ -50,19 +50,18 @@ def prepared_run(
     if host is not None:
         loaded = _of_host(loaded, host)
     loaded = _only(loaded, nodes)
-    if loaded.sections.clock == "virtual" and virtual is None:
-        virtual = VirtualTime(factor=1.0)
-    if virtual is not None and host is not None:
+    mode = Mode(loaded, joins, detached, bool(nodes), virtual)
+    if mode.virtual is not None and host is not None:
         text = "--host: hosts have no common virtual time; without it, all nodes run on this one"
         raise ManycoreError(text, EXIT_BAD_INPUT)
-    if virtual is not None and joins:
+    if mode.virtual is not None and joins:
         text = "--join: the platform that is running lives in wall time, not in virtual time"
         raise ManycoreError(text, EXIT_BAD_INPUT)
     occupied = occupied_cores(loaded.platform_name) if joins else ()
     placement = resolve(loaded, occupied)
     if joins:  # the run that is there has the links to other hosts
         placement = replace(placement, links=())
-    return Run(placement, Mode(loaded, joins, detached, bool(nodes), virtual)), placement
+    return Run(placement, mode), placement
 
 
 def virtual_options(command: Callable[..., Any]) -> Callable[..., Any]:
