@@ -231,7 +231,7 @@ class Runner:
             self._report_end(node)
         if node.is_removed:
             self._nodes.remove(node)
-        elif node.program.rules.ends_run and not (node.is_wanted_again or node.is_held):
+        elif node.program.rules.ends_run and not (is_respawned or node.is_held):
             self._stop(f"{node.program.name} has ended")
 
     def _restart(self, node: NodeProcess) -> None:

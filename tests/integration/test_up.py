@@ -165,6 +165,15 @@ def test_respawn_has_a_delay_and_a_limit(manycore, start, tmp_path, platform) ->
     assert len(again) == 2
 
 
+def test_a_node_that_is_respawned_ends_the_run_with_its_last_end(start, tmp_path, platform) -> None:
+    code = f"open({str(tmp_path / 'tries')!r}, 'a').write('x'); raise SystemExit(3)"
+    last = plain(code, respawn={"delay": 0.1, "max_retries": 2}, ends_run=True)
+    run = start(manycore_command("run", write(tmp_path, last=last, sleeper=SLEEPER), "--json"))
+    assert run.wait() == 1
+    assert (tmp_path / "tries").read_text() == "xxx"
+    assert sum('"last has ended"' in line for line in run.lines) == 1
+
+
 def test_a_supervisor_that_is_killed(manycore, start, tmp_path, platform) -> None:
     manycore("up", "-d", write(tmp_path, talker=TALKER))
     follower = start(manycore_command("logs", "-f"))

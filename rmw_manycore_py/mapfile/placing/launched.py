@@ -142,12 +142,13 @@ def launch_rules(
     if own.start.after is not None and after is None:
         notices.append(f"{place}: '{name}' does not wait for what is not in the mapfile")
     apart = [one for one in launched.values() if isinstance(one, LaunchedComponent)]
+    respawn = None if own.ends_run else own.respawn  # ros2 launch shuts down at the first end
     rules = LaunchRules(
         after=after,
         after_exit=own.start.on_exit,
         delay_s=own.start.delay_s,
-        respawn_delay_s=own.respawn.delay_s if own.respawn else None,
-        max_respawns=own.respawn.max_retries if own.respawn else 0,
+        respawn_delay_s=respawn.delay_s if respawn else None,
+        max_respawns=respawn.max_retries if respawn else 0,
         ends_run=own.ends_run,
         transitions=own.transitions,
         components=tuple(_placed(one) for one in own.components if one not in apart),

@@ -109,6 +109,16 @@ def test_a_mapfile_says_whose_end_stops_the_run(launched: Callable[..., Path]) -
     assert [name for name, node in nodes.items() if node["ends_run"]] == ["first"]
 
 
+def test_a_launch_file_shuts_down_before_it_respawns(
+    launched: Callable[..., Path], tmp_path: Path
+) -> None:
+    mapfile, text = launched(), f"from launch.actions import Shutdown\n{LAUNCH}"
+    text = text.replace("respawn=True", "respawn=True, on_exit=Shutdown()")
+    (tmp_path / "demo.launch.py").write_text(text)
+    first = by_name(check(mapfile))["first"]
+    assert (first["ends_run"], first["respawn"]) == (True, None)
+
+
 def test_nodes_get_cores_that_no_other_run_has(write: Write) -> None:
     mapfile = load_mapfile(
         write("nodes:\n  a: {cluster: 1, script: talker.py}\n  b: {cluster: 1, command: 'true'}\n")
