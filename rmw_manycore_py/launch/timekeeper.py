@@ -73,14 +73,15 @@ class TimekeeperReport:
 class Timekeeper:
     """The process that keeps the virtual time of a run. Told of each program by its rank."""
 
-    def __init__(self, process: subprocess.Popen[bytes], page: str) -> None:
+    def __init__(self, process: subprocess.Popen[bytes], page: str, library: str) -> None:
         self._process = process
         self._page = page
+        self._library = library
         self._unfinished = b""
 
     def environment(self, base: Mapping[str, str], rank: int) -> dict[str, str]:
         """Return `base` for a program to live in virtual time, with a fixed order of sets."""
-        preloaded = [f"{sys.prefix}/{_LIBRARY}", base.get("LD_PRELOAD", "")]
+        preloaded = [self._library, base.get("LD_PRELOAD", "")]
         return {
             "PYTHONHASHSEED": "0",
             **base,
@@ -149,6 +150,7 @@ class Timekeeper:
 def timekeeper(platform: str, mode: VirtualTime) -> Iterator[Timekeeper]:
     """Start the timekeeper of a platform that exists; end it after the block."""
     with ExitStack() as stack:
+        library = stack.enter_context(_preloadable(sys.prefix, _LIBRARY))
         pipes = () if mode.model is None else stack.enter_context(_model(mode.model))
         process = stack.enter_context(
             subprocess.Popen(
@@ -170,9 +172,22 @@ def timekeeper(platform: str, mode: VirtualTime) -> Iterator[Timekeeper]:
         page = first.decode().split()[1]
         try:
             with announced(platform, page):
-                yield Timekeeper(process, page)
+                yield Timekeeper(process, page, library)
         finally:
             process.kill()
+
+
+@contextmanager
+def _preloadable(prefix: str, library: str) -> Iterator[str]:
+    """Yield the path of a library for LD_PRELOAD, which splits at spaces and colons."""
+    if not set(prefix) & set(" :$"):
+        yield f"{prefix}/{library}"
+        return
+    directory = os.open(prefix, os.O_PATH | os.O_DIRECTORY)
+    try:
+        yield f"/proc/{os.getpid()}/fd/{directory}/{library}"
+    finally:
+        os.close(directory)
 
 
 @contextmanager

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import pytest
 
 from support import IS_MANYCORE
@@ -53,6 +56,21 @@ def test_durations_that_nodes_report_are_virtual(run) -> None:
 def test_a_pass_of_a_thread_with_a_seat_is_late_in_virtual_time(run) -> None:
     (late_s,) = run("passes", options=("--factor", "1"))["passes"]
     assert 1.0 <= float(late_s) < 1.5
+
+
+def test_the_path_of_the_environment_has_spaces(start, timed_mapfile, tmp_path: Path) -> None:
+    environment = tmp_path / "my env: 1"
+    (environment / "bin").mkdir(parents=True)
+    python = environment / "bin" / "python3"
+    python.symlink_to(Path(sys.executable).resolve())
+    for name in ("lib", "share", "pyvenv.cfg"):
+        (environment / name).symlink_to(Path(sys.prefix) / name)
+    main = "from rmw_manycore_py.cli.main import main; main()"
+    file = timed_mapfile(timed_programs, "threads")
+    options = ("--virtual", "--instant", "--duration", "2")
+    run = start([python, "-c", main, "run", file, *options])
+    assert run.wait() == 0
+    assert run.lines.count(f"threads  | {NS_PER_S // 2}") == 2
 
 
 def test_too_many_threads_are_named(start, timed_mapfile) -> None:
