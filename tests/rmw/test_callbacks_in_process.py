@@ -316,3 +316,26 @@ def test_the_thread_that_asks_or_answers_calls(node, arrivals_of, role: str):
         if arrivals.threads[-1] == threading.get_ident():
             break
     assert arrivals.threads[-1] == threading.get_ident()
+
+
+@pytest.mark.parametrize("is_own", [True, False], ids=["own message", "message of another context"])
+def test_a_callback_may_shut_its_context_down(node, arrivals_of, is_own):
+    """In the publishing thread and in the thread for callbacks."""
+    context = rclpy.Context()
+    rclpy.init(context=context)
+    listener = rclpy.create_node("listener", context=context)
+    done = threading.Event()
+
+    def shut_down() -> None:
+        context.shutdown()
+        done.set()
+
+    arrivals = arrivals_of(listen(listener), then=shut_down)
+    publisher = speak(listener if is_own else node)
+    wait_until(lambda: publisher.get_subscription_count() == 1, "a match")
+    publisher.publish(String())
+    assert done.wait(TIMEOUT_S)
+    assert not context.ok()
+    assert arrivals.count == 1
+    arrivals.clear()
+    listener.destroy_node()

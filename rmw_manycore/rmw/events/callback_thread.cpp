@@ -141,10 +141,12 @@ void CallbackThread::stop() noexcept {
     wake_.notify_all();
     wake_sleep();
   }
-  if (thread_.joinable()) {
+  // The thread would wait for itself in a callback of its own, and in that of another for the turn
+  // that this one has.
+  if (thread_.joinable() && !Reporter::is_calling()) {
     thread_.join();
   }
-  remove_all(events_);  // publishing threads may be calling
+  remove_all(events_);  // other threads may be calling
   for (const Reporters & reporters : by_mark_) {
     remove_all(reporters);
   }

@@ -38,7 +38,8 @@ public:
   /// Calls the callbacks for what has arrived on `topic`. Never waits for another thread: leaves it
   /// to this one if others are calling or taking. Nor does it call from a callback.
   void report(const MessageTopic & topic) noexcept;
-  /// Stops the thread; no callback is called afterwards. Must not be called from a callback.
+  /// Stops the thread; no other callback is called afterwards. From a callback it does not wait for
+  /// the thread's end.
   void stop() noexcept;
 
   /// True in a child of fork(): the thread does not exist there, and mutexes may be locked forever.
