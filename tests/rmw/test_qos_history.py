@@ -68,6 +68,16 @@ def test_keep_all_keeps_all(node, start_peer, peer_cluster):
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="sizes are of platforms")
+def test_keep_all_ignores_its_depth(node):
+    everything = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=2_000_000)
+    taken = []
+    node.create_subscription(String, "numbers", taken.append, everything)
+    publisher = node.create_publisher(String, "numbers", everything)
+    spin_until(node, publisher.get_subscription_count)
+    publisher.publish(String(data="0"))
+    spin_until(node, lambda: taken == [String(data="0")])
+
+
 def test_keep_all_blocks_the_publisher_up_to_its_bound(small_topic):
     """Reliable and keep all: nothing is overwritten; publishing fails while the ring is full."""
     qos = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)

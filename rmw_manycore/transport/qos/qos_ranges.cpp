@@ -24,7 +24,8 @@ void check_qos_ranges(const EndpointSpec & spec) {
   check_duration(spec, spec.qos.lifespan_ns, "lifespan");
   check_duration(spec, spec.qos.liveliness_lease_ns, "liveliness lease duration");
   constexpr uint32_t most = 1u << 20;
-  if (spec.qos.depth == 0 || spec.qos.depth > most) {
+  const bool is_bounded = spec.qos.history == History::keep_last;
+  if (spec.qos.depth == 0 || (is_bounded && spec.qos.depth > most)) {
     throw Error(
       ErrorCode::invalid_argument, "history depth " + std::to_string(spec.qos.depth) + " for '" +
                                      spec.topic + "' is out of range: expected 1 to " +
