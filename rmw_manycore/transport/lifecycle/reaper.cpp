@@ -233,10 +233,18 @@ bool Reaper::watch_joined() noexcept {
   }
 }
 
-/// Returns false if the process is dead.
+/// Returns false if the process is dead, or if another one had its pid: a program that executed
+/// this one, which no pidfd reports.
 bool Reaper::watch_one(uint32_t process) {
   watch(process);
-  return !registry_.processes().is_live(process) || registry_.lifelines().is_held(process);
+  const auto & processes = registry_.processes();
+  const pid_t pid = registry_.lifelines().holder(process).pid;
+  for (uint32_t slot = 0; slot < processes.high_water(); ++slot) {
+    if (slot != process && processes.is_live(slot) && processes[slot].pid == pid) {
+      return false;
+    }
+  }
+  return !processes.is_live(process) || registry_.lifelines().is_held(process);
 }
 
 /// Returns once the process that sent the message has joined: it holds the registry lock from
