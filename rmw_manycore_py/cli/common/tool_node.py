@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from typing import Any
 
 from rmw_manycore_py.errors import ManycoreError
@@ -20,11 +20,14 @@ ANSWER_TIMEOUT_S = 5.0
 
 
 @contextmanager
-def tool_node(platform: str, name: str | None = None, *, sim_time: bool = False) -> Iterator[Any]:
+def tool_node(
+    platform: str, name: str | None = None, *, sim_time: bool = False, until_ctrl_c: bool = False
+) -> Iterator[Any]:
     """Yield a node until the block ends or an interrupt ends it; shut down quietly either way.
 
     With `sim_time` the node's clock follows /clock. An interrupt raises KeyboardInterrupt in the
-    block while the node is still usable.
+    block while the node is still usable. With `until_ctrl_c` it goes no further than the block,
+    and what follows the block runs.
     """
     enter_middleware()
     os.environ["MANYCORE_PLATFORM"] = platform
@@ -40,7 +43,7 @@ def tool_node(platform: str, name: str | None = None, *, sim_time: bool = False)
         parameter_overrides=[Parameter("use_sim_time", value=sim_time)],
     )
     try:
-        with suppress(KeyboardInterrupt):
+        with suppress(KeyboardInterrupt) if until_ctrl_c else nullcontext():
             yield node
     finally:
         node.destroy_node()

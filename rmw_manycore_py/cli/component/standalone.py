@@ -57,17 +57,14 @@ def command(wanted: Wanted, name: str | None, platform: str) -> None:
         start_new_session=True,  # only `_end` forwards Ctrl-C, once
         preexec_fn=dies_with_this_process(),
     )
-    full_name, loaded = absolute_name(name), None
+    full_name = absolute_name(name)
     try:
         existing_node(platform, name, START_TIMEOUT_S, "Unable to find container node")
         with tool_node(platform) as tool:
-            loaded = Container(tool, full_name).load(wanted)
+            unique_id, node = Container(tool, full_name).load(wanted)
     except (ManycoreError, KeyboardInterrupt):
         _end(container)
         raise
-    if loaded is None:  # interrupted
-        sys.exit(_end(container))
-    unique_id, node = loaded
     sys.exit(_end_of(container, loaded_line(unique_id, full_name, node)))
 
 

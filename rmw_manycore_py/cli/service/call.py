@@ -56,7 +56,7 @@ def command(
     """
     service_type = load_type(type_name, "srv")
     request = message_of(service_type.Request, parse_values(values or DEFAULTS))
-    with tool_node(platform) as node:
+    with tool_node(platform, until_ctrl_c=rate_hz is not None) as node:
         client = node.create_client(service_type, service)
         if not client.service_is_ready() and not as_json:
             echo("waiting for service to become available...")

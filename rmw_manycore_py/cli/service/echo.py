@@ -52,7 +52,7 @@ def command(
     def heard(event: Any) -> None:
         echo(_text(event, style, shown))
 
-    with tool_node(platform) as node:
+    with tool_node(platform, until_ctrl_c=True) as node:
         from rclpy.qos import QoSPresetProfiles
 
         qos = QoSPresetProfiles.get_from_short_key("services_default")

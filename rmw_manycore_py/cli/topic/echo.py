@@ -109,7 +109,7 @@ def command(
             raw=style == "raw",
             qos=qos,
         )
-    listener.run(timeout_s)
+    listener.run(timeout_s, until_ctrl_c=not once)
 
 
 def _text(part: Any, info: dict[str, Any] | None, style: str | None, shown: Shown) -> str:

@@ -81,9 +81,12 @@ class Listener:
             return self._published_s
         return float(self._clock.now().nanoseconds * 1e-9)
 
-    def run(self, timeout_s: float | None = None) -> None:
-        """Spin until stopped, interrupted or timed out."""
-        with tool_node(self._platform, sim_time=self._sim_time) as node:
+    def run(self, timeout_s: float | None = None, *, until_ctrl_c: bool = True) -> None:
+        """Spin until stopped, timed out or interrupted.
+
+        An interrupt raises KeyboardInterrupt only without `until_ctrl_c`.
+        """
+        with tool_node(self._platform, sim_time=self._sim_time, until_ctrl_c=until_ctrl_c) as node:
             self._node, self._clock = node, node.get_clock()
             self._wait_for_topic(node)
             self._subscribe(node)

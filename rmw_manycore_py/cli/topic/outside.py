@@ -41,8 +41,11 @@ class OutsideListener:
         """End `run` after the current message."""
         self._over = True
 
-    def run(self, timeout_s: float | None = None) -> None:
-        """Spin until stopped, interrupted or timed out."""
+    def run(self, timeout_s: float | None = None, *, until_ctrl_c: bool = True) -> None:
+        """Spin until stopped, timed out or interrupted.
+
+        An interrupt raises KeyboardInterrupt only without `until_ctrl_c`.
+        """
         import rclpy
         from rclpy.executors import ExternalShutdownException
 
@@ -51,13 +54,17 @@ class OutsideListener:
         node = rclpy.create_node(
             f"_manycore_{os.getpid()}", enable_rosout=False, start_parameter_services=False
         )
+        is_interrupted = True
         with suppress(KeyboardInterrupt, ExternalShutdownException):
             listens = False
             while not self._over and time.monotonic() < end_s:
                 listens = listens or self._subscribe(node)
                 rclpy.spin_once(node, timeout_sec=_LOOK_S)
+            is_interrupted = False
         node.destroy_node()
         rclpy.try_shutdown()
+        if is_interrupted and not until_ctrl_c:
+            raise KeyboardInterrupt
 
     def _subscribe(self, node: Any) -> bool:
         publishers = node.get_publishers_info_by_topic(self._topic)

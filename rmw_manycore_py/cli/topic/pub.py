@@ -142,7 +142,8 @@ def command(
     given = read_values(file) if file else [parse_values(values or DEFAULTS)]
     for fields in given:
         message_of(message_type, fields, Time())
-    with tool_node(platform, node_name, sim_time=sim_time) as node:
+    is_endless = not (times or file)
+    with tool_node(platform, node_name, sim_time=sim_time, until_ctrl_c=is_endless) as node:
         publisher = node.create_publisher(message_type, topic, qos.profile())
         wait_for_subscriptions(node, publisher, wanted, timeout_s)
         echo("publisher: beginning loop")
