@@ -55,7 +55,39 @@ def parameter_text(value: Any) -> str:
     return _quoted(value) if isinstance(value, str) else repr(value)
 
 
+class _Quoted(str):
+    """Text that is written in double quotes."""
+
+
+class _Writer(yaml.SafeDumper):
+    """Writes quoted and other texts."""
+
+
+_Writer.add_representer(
+    _Quoted, lambda writer, text: writer.represent_scalar("tag:yaml.org,2002:str", text, style='"')
+)
+
+
+def parameters_yaml(values: Mapping[str, Any]) -> str:
+    """Return nested parameters as YAML that rcl reads as the same types, laid out as by ros2cli."""
+    return _yaml(_with_quotes(values))
+
+
+def _with_quotes(value: Any) -> Any:
+    """Quote all strings: unquoted ones, rcl and YAML take for numbers by different rules."""
+    if isinstance(value, Mapping):
+        return {name: _with_quotes(part) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_with_quotes(part) for part in value]
+    return _Quoted(value) if isinstance(value, str) else value
+
+
 def _quoted(text: str) -> str:
     """Return a text in double quotes, with escapes for what YAML does not allow as it is."""
-    style: dict[str, Any] = {"default_style": '"', "allow_unicode": True, "width": 1 << 30}
-    return str(yaml.safe_dump(text, **style)).removesuffix("\n")
+    return _yaml(_Quoted(text)).removesuffix("\n")
+
+
+def _yaml(value: Any) -> str:
+    """Format as YAML, one line for each scalar."""
+    style = {"allow_unicode": True, "default_flow_style": False, "width": 1 << 30}
+    return str(yaml.dump(value, Dumper=_Writer, **style))
