@@ -7,6 +7,7 @@ import json
 import signal
 import sys
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 import yaml
@@ -164,6 +165,28 @@ def test_dumped_parameters_are_loaded_as_they_were(start, manycore, tmp_path) ->
     assert (len(loaded), len(failed)) == (len(values), 1)
     assert "start_type_description_service failed: Trying to set a read-only" in failed[0]
     assert manycore("param", "dump", "/typed") == dumped
+
+
+def test_json_has_no_bytes_and_no_infinity(start, manycore) -> None:
+    start(peer_command(with_values_of_all_types)).wait_for("ready")
+    get = ("param", "get", "--json", "/typed")
+    data = manycore(*get, "data")
+    assert strict(data) == {"name": "data", "type": "byte array", "value": [0, 255]}
+    assert strict(manycore(*get, "numbers"))["value"] == [1e20, -0.5, "inf"]
+    dumped = strict(manycore("param", "dump", "--json", "/typed"))["/typed"]["ros__parameters"]
+    assert (dumped["data"], dumped["numbers"][2]) == ([0, 255], "inf")
+    level = ("/level", "std_msgs/msg/Float64")
+    start(manycore_command("topic", "pub", "-r", "50", *level, "data: .nan")).wait_for("#1")
+    assert strict(manycore("topic", "echo", "--once", "--json", *level)) == {"data": "nan"}
+
+
+def strict(text: str) -> Any:
+    """Read JSON as other languages do, which take no NaN and no Infinity."""
+
+    def refuse(word: str) -> None:
+        raise AssertionError(f"{word} is not JSON")
+
+    return json.loads(text, parse_constant=refuse)
 
 
 def fibonacci_by_steps() -> None:

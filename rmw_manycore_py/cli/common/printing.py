@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Iterable, Sequence
 from copy import copy
@@ -22,6 +23,7 @@ __all__ = [
     "counted",
     "echo",
     "escaped",
+    "json_text",
     "new_table",
     "print_json",
     "print_notices",
@@ -52,9 +54,33 @@ def echo(text: object = "", *, err: bool = False, nl: bool = True) -> None:
     click.echo(printable(str(text)), err=err, nl=nl)
 
 
+def json_text(data: Any, indent: int | None = None) -> str:
+    """Format data as JSON, which has no infinity, NaN or bytes: texts and numbers instead."""
+    try:
+        return json.dumps(data, indent=indent, default=_in_json, allow_nan=False)
+    except ValueError:
+        return json.dumps(_finite(data), indent=indent, default=_in_json, allow_nan=False)
+
+
 def print_json(data: Any) -> None:
     """Print data as JSON."""
-    click.echo(json.dumps(data, indent=2, default=str))
+    click.echo(json_text(data, indent=2))
+
+
+def _in_json(value: object) -> object:
+    """Return a byte of ROS as a number, several bytes as a list."""
+    if isinstance(value, bytes):
+        return value[0] if len(value) == 1 else list(value)
+    return str(value)
+
+
+def _finite(data: Any) -> Any:
+    """Replace infinity and NaN by texts."""
+    if isinstance(data, dict):
+        return {name: _finite(part) for name, part in data.items()}
+    if isinstance(data, (list, tuple)):
+        return [_finite(part) for part in data]
+    return str(data) if isinstance(data, float) and not math.isfinite(data) else data
 
 
 def print_notices(notices: Iterable[str]) -> None:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 
 import click
@@ -15,7 +14,7 @@ from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_text import to_plain
 from rmw_manycore_py.cli.common.message_values import message_of, parse_values
 from rmw_manycore_py.cli.common.options import examples, platform_option
-from rmw_manycore_py.cli.common.printing import echo, print_notices
+from rmw_manycore_py.cli.common.printing import echo, json_text, print_notices
 from rmw_manycore_py.cli.common.tool_node import result_of, tool_node
 from rmw_manycore_py.cli.common.values_argument import DEFAULTS, values_argument
 from rmw_manycore_py.errors.suggestions import closest
@@ -68,7 +67,7 @@ def command(
                 echo(f"requester: making request: {request!r}\n")
             start_s = time.monotonic()
             response = result_of(node, client.call_async(request), service)
-            echo(json.dumps(to_plain(response)) if as_json else f"response:\n{response!r}\n")
+            echo(json_text(to_plain(response)) if as_json else f"response:\n{response!r}\n")
             if rate_hz is None:
                 return
             time.sleep(max(0.0, start_s + 1 / rate_hz - time.monotonic()))

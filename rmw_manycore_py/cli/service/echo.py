@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import click
@@ -14,7 +13,7 @@ from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_text import Shown, plain_to_yaml, to_csv, to_plain
 from rmw_manycore_py.cli.common.names import row_of
 from rmw_manycore_py.cli.common.options import examples, platform_option
-from rmw_manycore_py.cli.common.printing import echo, print_notices
+from rmw_manycore_py.cli.common.printing import echo, json_text, print_notices
 from rmw_manycore_py.cli.common.shown_options import shown_options
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.process.spinning import spin_once
@@ -81,5 +80,5 @@ def _text(event: Any, style: str | None, shown: Shown) -> str:
     plain = to_plain(event) if style == "json" else to_plain(event, shown)
     plain["info"]["event_type"] = EVENTS[plain["info"]["event_type"]]
     if style == "json":
-        return json.dumps(plain)
+        return json_text(plain)
     return f"{plain_to_yaml(plain, flow_style=style == 'flow')}---"

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import click
@@ -18,7 +17,7 @@ from rmw_manycore_py.cli.common.message_text import (
     to_yaml,
 )
 from rmw_manycore_py.cli.common.options import discovery_options, examples, platform_option
-from rmw_manycore_py.cli.common.printing import echo
+from rmw_manycore_py.cli.common.printing import echo, json_text
 from rmw_manycore_py.cli.common.seconds import Seconds
 from rmw_manycore_py.cli.common.shown_options import shown_options
 from rmw_manycore_py.cli.topic.listening import Listener
@@ -119,7 +118,7 @@ def _text(part: Any, info: dict[str, Any] | None, style: str | None, shown: Show
     """
     if style == "json":
         plain = to_plain(part)
-        return json.dumps(plain if info is None else {"info": info, "message": plain})
+        return json_text(plain if info is None else {"info": info, "message": plain})
     if style == "raw" or not is_message(part):
         return ("" if info is None else _RAW_HEAD.format(info)) + f"{part}\n---"
     if style == "csv":

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -12,7 +11,7 @@ import click
 
 from rmw_manycore_py.cli.common.completion import complete_topics, complete_types_of_topic
 from rmw_manycore_py.cli.common.options import number_option, platform_option, talking_options
-from rmw_manycore_py.cli.common.printing import echo
+from rmw_manycore_py.cli.common.printing import echo, json_text
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -55,4 +54,4 @@ def measuring_options(least: int, default: int, of: str) -> Callable[[Command], 
 
 def print_result(result: DataclassInstance, as_json: bool) -> None:
     """Print one result as text or JSON."""
-    echo(json.dumps(asdict(result)) if as_json else result)
+    echo(json_text(asdict(result)) if as_json else result)

@@ -6,8 +6,6 @@ Arguments: platform, topic. Of a fast topic only some are printed, but always th
 
 from __future__ import annotations
 
-import json
-import math
 import sys
 import time
 from base64 import b64encode
@@ -17,6 +15,7 @@ import numpy as np
 
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.message_text import Shown, to_plain
+from rmw_manycore_py.cli.common.printing import json_text
 from rmw_manycore_py.cli.topic.cloud_samples import cloud_of, is_cloud
 from rmw_manycore_py.cli.topic.listening import Listener
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
@@ -56,7 +55,7 @@ def main() -> None:
         message, newest = newest, None
         if message is None:
             return
-        row = {"time_s": time.time(), "fields": _finite(to_plain(message, _SHOWN))}
+        row = {"time_s": time.time(), "fields": to_plain(message, _SHOWN)}
         if surroundings is not None:
             _show({**row, "cloud": cloud_of(message)})
             surroundings.belong_to(message.header.frame_id)
@@ -75,16 +74,7 @@ def main() -> None:
 
 
 def _show(row: dict[str, Any]) -> None:
-    print(json.dumps(row), flush=True)
-
-
-def _finite(plain: Any) -> Any:
-    """Replace numbers that JSON lacks by texts."""
-    if isinstance(plain, dict):
-        return {name: _finite(part) for name, part in plain.items()}
-    if isinstance(plain, list):
-        return [_finite(part) for part in plain]
-    return str(plain) if isinstance(plain, float) and not math.isfinite(plain) else plain
+    print(json_text(row), flush=True)
 
 
 def image_of(message: Any) -> dict[str, Any] | None:

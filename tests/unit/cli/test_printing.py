@@ -10,7 +10,13 @@ from rich.console import Console
 from rich.text import Text
 
 import rmw_manycore_py.cli
-from rmw_manycore_py.cli.common.printing import echo, escaped, new_table, print_table
+from rmw_manycore_py.cli.common.printing import (
+    echo,
+    escaped,
+    json_text,
+    new_table,
+    print_table,
+)
 
 pytestmark = pytest.mark.unit
 
@@ -39,6 +45,15 @@ def test_names_are_escaped() -> None:
 def test_lines_and_tabs_of_a_text_stay(capsys: pytest.CaptureFixture[str]) -> None:
     echo("a\n\tb\x1b[2J", nl=False)
     assert capsys.readouterr().out == "a\n\tb\\x1b[2J"
+
+
+def test_json_has_texts_for_numbers_that_it_lacks() -> None:
+    data = {"a": [1.5, float("inf"), {"b": float("nan")}], "c": (-float("inf"),), "d": Path("x")}
+    text = '{"a": [1.5, "inf", {"b": "nan"}], "c": ["-inf"], "d": "x"}'
+    assert json_text(data) == text
+    assert (
+        json_text({"one": b"\xff", "two": [b"\x00", b"ab"]}) == '{"one": 255, "two": [0, [97, 98]]}'
+    )
 
 
 def test_cells_are_no_markup(capsys: pytest.CaptureFixture[str]) -> None:
