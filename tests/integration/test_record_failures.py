@@ -3,18 +3,24 @@
 
 from __future__ import annotations
 
+import shlex
+from contextlib import closing
+from pathlib import Path
+
 import pytest
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from rmw_manycore_py.native._transport import Process, Qos
 from rmw_manycore_py.recording.output import Output
 from rmw_manycore_py.recording.recording import Recording
-from support import IS_MANYCORE, wait_until
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
 from support.installs.building import write_definitions
 from support.nodes.ros import peer_node, spin_until, type_of
-from support.nodes.speakers import hear
+from support.nodes.speakers import hear, say
 from support.processes.commands import manycore_command, peer_command
 from support.processes.own_shm import can_mount
+from support.processes.person import Person
+from support.processes.platforms import environment
 from support.samples.recordings import NS_PER_S, START_NS, string_row, text_message, write_texts
 from support.sources.advice import run_quoted
 
@@ -62,6 +68,46 @@ def say_large(topic: str) -> None:
         publisher = node.create_publisher(type(message), topic, 10)
         node.create_timer(0.01, lambda: publisher.publish(message))
         spin_until(node, lambda: False, 1e6)
+
+
+@pytest.mark.parametrize("ignored", ["", "trap '' HUP; "], ids=["SIGHUP", "nohup"])
+def test_a_terminal_that_hangs_up_leaves_a_whole_recording(
+    start, platform, tmp_path, ignored
+) -> None:
+    bag = tmp_path / "bag"
+    start(peer_command(say, "/news", {}, 0.02)).wait_for("said")
+    record = manycore_command("topic", "record", "/news", "-o", bag, "--duration", "2")
+    shell = ["sh", "-c", f"{ignored}exec {shlex.join(map(str, record))}"]
+    with closing(Person(shell, environment(platform))) as person:
+        person.sees(r"\d messages")
+        person.hangs_up()
+        person.process.wait(TIMEOUT_S)
+    check_is_whole(bag)
+
+
+@pytest.mark.parametrize("where", ["2>/dev/full", "2>&1 | head -n 1"])
+def test_a_recording_goes_on_without_its_output(start, tmp_path, where) -> None:
+    bag = tmp_path / "bag"
+    start(peer_command(say, "/news", {}, 0.02)).wait_for("said")
+    record = manycore_command("topic", "record", "/news", "-o", bag, "--duration", "1")
+    start(["sh", "-c", f"{shlex.join(map(str, record))} {where}"]).wait()
+    check_is_whole(bag)
+
+
+def check_is_whole(bag: Path) -> None:
+    assert (bag / "metadata.yaml").exists()
+    with Recording(bag) as recording:
+        assert not recording.faults
+        assert recording.span.messages > 0
+
+
+def test_a_terminal_that_hangs_up_ends_the_player(platform, tmp_path) -> None:
+    bag = write_texts(tmp_path / "a.mcap", [("/a", 0, "x"), ("/a", 1000, "y")])
+    play = manycore_command("topic", "play", bag)
+    with closing(Person(play, environment(platform))) as person:
+        person.sees("playing")
+        person.hangs_up()
+        person.process.wait(TIMEOUT_S)
 
 
 def test_what_is_there_is_not_overwritten(start, tmp_path) -> None:

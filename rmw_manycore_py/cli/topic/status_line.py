@@ -12,7 +12,10 @@ _CLEAR = "\r\x1b[K"
 
 
 class StatusLine:
-    """Writes to standard error, below permanent lines."""
+    """Writes to standard error, below permanent lines. Thread-safe.
+
+    Silent once writing has failed: a recording goes on after its terminal or reader has gone.
+    """
 
     def __init__(self, *, quiet: bool = False) -> None:
         self._quiet = quiet
@@ -45,5 +48,8 @@ class StatusLine:
             self._write(_CLEAR)
 
     def _write(self, text: str) -> None:
-        sys.stderr.write(text)
-        sys.stderr.flush()
+        try:
+            sys.stderr.write(text)
+            sys.stderr.flush()
+        except OSError:  # a terminal that hung up, a closed pipe, a full disk
+            self._quiet = True

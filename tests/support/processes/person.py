@@ -54,6 +54,12 @@ class Person:
         assert termios.tcgetattr(self._theirs) == self.before
         return status
 
+    def hangs_up(self) -> None:
+        """Close the terminal, as its window or connection does."""
+        null = os.open(os.devnull, os.O_RDWR)
+        os.dup2(null, self._terminal)
+        os.close(null)
+
     def close(self) -> None:
         self.process.kill()
         self.process.wait()
