@@ -17,7 +17,7 @@ from rmw_manycore_py.cli.common.starting import prepared_run, starting_options
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.detached import run_in_background
 from rmw_manycore_py.launch.runs.client import Client
-from rmw_manycore_py.launch.runs.directory import RunDirectory, runs_of
+from rmw_manycore_py.launch.runs.directory import RunDirectory, all_runs
 from rmw_manycore_py.mapfile import load_mapfile
 from rmw_manycore_py.ros.domain import default_platform
 
@@ -62,10 +62,20 @@ def command(
 
 
 def _run_of(mapfile: Path) -> RunDirectory | None:
-    """Return the run of a mapfile on its platform, if there is one."""
-    runs = runs_of(load_mapfile(mapfile).platform_name)
-    path = str(mapfile.resolve())
-    return next((run for run in runs if run.is_alive and run.info.get("mapfile") == path), None)
+    """Return the run of a mapfile on its platform, or on the one that it named before."""
+    loaded, path = load_mapfile(mapfile), str(mapfile.resolve())
+    name, is_named = loaded.platform_name, loaded.sections.platform.name is not None
+    renamed = None
+    for run in all_runs():
+        info = run.info
+        if not run.is_alive or info.get("mapfile") != path:
+            continue
+        if run.platform == name:
+            return run
+        # Names from the environment are of several platforms at a time.
+        if (is_named or info.get("names_platform")) and not info.get("joins"):
+            renamed = renamed or run
+    return renamed
 
 
 def _check_host(run: RunDirectory, host: str | None) -> None:

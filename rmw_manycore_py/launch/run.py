@@ -138,6 +138,7 @@ class Run:
         mode = self._mode
         info: dict[str, Any] = {
             "mapfile": str(mode.mapfile.path.resolve()),
+            "names_platform": mode.mapfile.sections.platform.name is not None,
             "nodes": self.program_names,
             "detached": mode.detached,
             "joins": mode.joins,

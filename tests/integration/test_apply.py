@@ -204,6 +204,7 @@ def test_what_a_running_platform_keeps_is_refused(manycore, mapfile, platform) -
     topics = "topics: {/scan: {topic_dsm_size: 65536}}\n"
     changes = {
         "the platform's shape has changed": ("platform: {clusters: 3}\n" + topics, moved),
+        "the platform's name has changed": (f"platform: {{name: {platform}-2}}\n{topics}", moved),
         "the section 'topics' has changed": (topics.replace("65536", "131072"), moved),
         "the clock has changed": (f"clock: virtual\n{topics}", moved),
         "what is bridged has changed": (topics, f"{moved}, {ROUTES}"),
@@ -218,6 +219,29 @@ def test_what_a_running_platform_keeps_is_refused(manycore, mapfile, platform) -
     other = mapfile.with_name("other.yaml")
     write(other, sleeper=sleeper)
     assert "is running already" in manycore("up", "-d", other, status=1).output
+    manycore("stop")
+
+
+def test_a_mapfile_that_loses_its_platform_keeps_it(manycore, mapfile, platform) -> None:
+    named = f"{platform}-named"
+    write(mapfile, f"platform: {{name: {named}}}\n", sleeper=f"cluster: 1, {SLEEP}")
+    manycore("up", "-d", mapfile)
+    write(mapfile, sleeper=f"cluster: 1, {SLEEP}")
+    text = manycore("up", "-d", mapfile, status=EXIT_BAD_INPUT).output
+    assert "the platform's name has changed, which cannot be applied" in text
+    assert f"`manycore stop --platform {named}`, then `manycore up -d {mapfile}`" in text
+    manycore("stop", "--platform", named)
+    assert leftovers(named) == []
+
+
+def test_names_from_the_environment_are_two_platforms(
+    start, manycore, mapfile, other_platform
+) -> None:
+    write(mapfile, sleeper=f"cluster: 1, {SLEEP}")
+    manycore("up", "-d", mapfile)
+    other = start(manycore_command("up", "-d", mapfile), MANYCORE_PLATFORM=other_platform)
+    assert other.wait() == 0
+    manycore("stop", "--platform", other_platform)
     manycore("stop")
 
 
