@@ -62,7 +62,7 @@ from rmw_manycore_py.trace.formats import SUFFIXES
     metavar="NAME",
     help="host, coolidge, bostan, or a file with the parameters of another platform.",
 )
-@duration_option(60.0, "Simulate this many seconds.")
+@duration_option(60.0, "Simulate this many seconds.", endless=False)
 @number_option("--seed", within=(0, None), default=0, help="Seed of the random numbers.")
 @chains_option
 @click.option(

@@ -27,6 +27,7 @@ from rmw_manycore_py.launch.processes.state import NodeState
 from rmw_manycore_py.launch.schedule import Schedule
 from rmw_manycore_py.launch.timekeeper import Timekeeper
 from rmw_manycore_py.process.signals import SignalInbox
+from rmw_manycore_py.process.waits import wait_until_s
 
 Report = Callable[[Event], None]
 Handler = Callable[[], None]
@@ -375,8 +376,7 @@ class Runner:
         waiting = (node for node in self._nodes if node.state is NodeState.WAITING)
         # A node that is due waits for another one to leave its core.
         starts = [node.start_at_s for node in waiting if node.start_at_s > now_s]
-        due_s = min([self._end_s, *starts, *(node.deadline_s for node in self._nodes)])
-        return None if due_s == float("inf") else max(due_s - now_s, 0)
+        return wait_until_s(min([self._end_s, *starts, *(node.deadline_s for node in self._nodes)]))
 
     def _report_lines(self, node: NodeProcess, lines: list[str]) -> None:
         for line in lines:

@@ -21,6 +21,7 @@ from rmw_manycore_py.process.parent_death import dies_with_this_process
 _PROGRAM = "lib/rmw_manycore/manycore_timekeeper"
 _LIBRARY = "lib/rmw_manycore/libmanycore_virtual_time.so"
 _NS_PER_S = 1_000_000_000
+_MAX_DURATION_S = 1e9  # its nanoseconds fit with the time that has passed
 
 
 @dataclass(frozen=True)
@@ -125,7 +126,7 @@ class Timekeeper:
 
     def begin(self, duration_s: float | None) -> None:
         """Tell that all programs were started; time begins, and ends after `duration_s`."""
-        self._tell(f"go {round((duration_s or 0) * _NS_PER_S)}")
+        self._tell(f"go {_duration_ns(duration_s)}")
 
     def hold(self) -> None:
         """Let time stand until it is resumed."""
@@ -133,8 +134,7 @@ class Timekeeper:
 
     def resume(self, duration_s: float | None, topic: str, is_single: bool) -> None:
         """Let time go on: for a duration, until a message on a topic, or to what is due next."""
-        duration_ns = -1 if is_single else round((duration_s or 0) * _NS_PER_S)
-        self._tell(f"resume {duration_ns} {topic}")
+        self._tell(f"resume {-1 if is_single else _duration_ns(duration_s)} {topic}")
 
     def end(self) -> None:
         """Let time go on at the pace of the wall clock: the nodes are stopping."""
@@ -144,6 +144,13 @@ class Timekeeper:
         assert self._process.stdin is not None
         with suppress(BrokenPipeError):  # its end is reported
             self._process.stdin.write(f"{line}\n".encode())
+
+
+def _duration_ns(duration_s: float | None) -> int:
+    """Return 0 for a duration without end, and for one of more than 31 years."""
+    if duration_s is None or duration_s > _MAX_DURATION_S:
+        return 0
+    return round(duration_s * _NS_PER_S)
 
 
 @contextmanager

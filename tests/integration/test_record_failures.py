@@ -94,6 +94,16 @@ def test_a_recording_goes_on_without_its_output(start, tmp_path, where) -> None:
     check_is_whole(bag)
 
 
+def test_a_recording_may_last_long(start, tmp_path) -> None:
+    start(peer_command(say, "/news", {}, 0.02)).wait_for("said")
+    words = ("/news", "-o", tmp_path / "bag", "--duration", "720h", "--json")
+    recorder = start(manycore_command("topic", "record", *words))
+    file = tmp_path / "bag" / "bag_0.mcap"
+    wait_until(lambda: file.exists() and file.stat().st_size > 2048, "some is on the disk")
+    assert recorder.stop() == 0, recorder
+    check_is_whole(tmp_path / "bag")
+
+
 def check_is_whole(bag: Path) -> None:
     assert (bag / "metadata.yaml").exists()
     with Recording(bag) as recording:

@@ -198,6 +198,14 @@ def test_a_signal_stops_the_nodes_cleanly(start_run: StartRun, number: signal.Si
         assert run.event("ended", name)["reason"] == "stopped"
 
 
+@pytest.mark.parametrize("duration_s", [720 * 3600.0, float("inf")])
+def test_a_duration_may_be_long(start_run: StartRun, duration_s: float) -> None:
+    run = start_run(duration_s=duration_s, node=python(POLITE))
+    run.wait_for_lines("ready", "node")
+    run.program.signal(signal.SIGINT)
+    assert run.program.wait() == 0
+
+
 def test_who_ignores_hanging_up_may_log_out(start_run: StartRun) -> None:
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # like nohup; children inherit it
     try:

@@ -16,6 +16,7 @@ import pytest
 
 from support import IS_MANYCORE
 from support.nodes import timed
+from support.processes.commands import manycore_command
 from support.samples.recordings import write_texts
 
 pytestmark = [
@@ -76,6 +77,14 @@ def test_the_same_run_again_beside_load_and_on_one_cpu(mapfile, log_of) -> None:
     assert logs[0]["asker"][2] == (
         f"answer server 2 {at_ns + 4 * NS_PER_S // 100} {at_ns + 4 * NS_PER_S // 100}"
     )
+
+
+@pytest.mark.parametrize("duration", ["1e12", "inf"])
+def test_time_may_have_no_end(mapfile, start, duration) -> None:
+    words = ("--virtual", "--instant", "--duration", duration)
+    run = start(manycore_command("run", mapfile("talker", "echo"), *words))
+    run.wait_for("heard talker 30 ")
+    assert run.stop() == 0, run
 
 
 def test_threads_of_an_executor_hold_time_while_they_compute(mapfile, log_of) -> None:

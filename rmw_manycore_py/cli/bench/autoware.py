@@ -24,7 +24,7 @@ _EXAMPLES = examples(
 
 @click.command("autoware", epilog=_EXAMPLES)
 @click.argument("profile", type=click.Path(exists=True, dir_okay=False, path_type=Path))
-@duration_option(20.0, "Seconds to publish.")
+@duration_option(20.0, "Seconds to publish.", endless=False)
 @bench_options
 def command(profile: Path, duration_s: float, **options: Any) -> None:
     """Run the skeleton of a large application.

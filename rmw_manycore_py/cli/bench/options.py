@@ -66,7 +66,7 @@ def mapping_runs_options(*, min_mappings: int, repetitions: int) -> Callable[[Bo
         number_option(
             "--repetitions", within=(1, None), default=repetitions, help="Runs of each mapping."
         ),
-        duration_option(10.0, "Length of a run."),
+        duration_option(10.0, "Length of a run.", endless=False),
         number_option(
             "--seed", within=(0, None), default=1, help="Seed of mappings and predictions."
         ),

@@ -45,7 +45,7 @@ MAX_DEVIATION = 0.02
 )
 @mapfile_argument()
 @number_option("--runs", within=(2, None), default=6, help="Number of runs.")
-@duration_option(10.0, "Length of a run, in virtual time.")
+@duration_option(10.0, "Length of a run, in virtual time.", endless=False)
 @click.option("--timeout", type=Seconds(), default=300.0, help="Wall time that a run may take.")
 @click.option(
     "--profile",

@@ -14,12 +14,14 @@ from rmw_manycore_py.cli.common.seconds import Seconds
 def duration_option(
     default_s: float | None = None,
     text: str = "Stop this long after the start of the last node (seconds, or as 90s, 5m).",
+    *,
+    endless: bool = True,
 ) -> Callable[[Any], Any]:
-    """Return the option `--duration`, in seconds."""
+    """Return the option `--duration`, in seconds; with `endless` also inf."""
     return click.option(
         "--duration",
         "duration_s",
-        type=Seconds(),
+        type=Seconds(endless=endless),
         metavar="S",
         default=default_s,
         show_default=default_s is not None,

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import math
 import selectors
 import time
 from collections.abc import Callable
@@ -15,6 +16,7 @@ from rmw_manycore_py.cli.common.printing import counted, echo, size_text
 from rmw_manycore_py.cli.topic.alarm import Alarm
 from rmw_manycore_py.cli.topic.status_line import StatusLine
 from rmw_manycore_py.process.signals import signal_inbox
+from rmw_manycore_py.process.waits import wait_until_s
 from rmw_manycore_py.recording.output import Output
 from rmw_manycore_py.recording.record.recorder import Recorder
 from rmw_manycore_py.recording.record.side import Side
@@ -84,18 +86,16 @@ def _wait(
     progress: Callable[[], str],
 ) -> None:
     """Show progress until a signal, the end of the duration, or the end of the recorder."""
-    began_s = time.monotonic()
-    while not selector.select(_pause_s(line, began_s, duration_s)):
-        if duration_s is not None and time.monotonic() - began_s >= duration_s:
+    end_s = math.inf if duration_s is None else time.monotonic() + duration_s
+    while not selector.select(_pause_s(line, end_s)):
+        if time.monotonic() >= end_s:
             return
         line.show(progress())
 
 
-def _pause_s(line: StatusLine, began_s: float, duration_s: float | None) -> float | None:
-    pauses = [] if line.period_s is None else [line.period_s]
-    if duration_s is not None:
-        pauses.append(max(began_s + duration_s - time.monotonic(), 0))
-    return min(pauses, default=None)
+def _pause_s(line: StatusLine, end_s: float) -> float | None:
+    pauses = (line.period_s, wait_until_s(end_s))
+    return min((pause_s for pause_s in pauses if pause_s is not None), default=None)
 
 
 def _progress(recorder: Recorder, output: Output, began_s: float) -> str:

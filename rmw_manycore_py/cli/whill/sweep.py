@@ -47,7 +47,7 @@ from rmw_manycore_py.papers.roslite2.sweep import Drive, sweep
     show_default=True,
     help="Of the chip's cores, relative to the profile's machine. May be repeated.",
 )
-@duration_option(60.0, "Length of a drive, in virtual time.")
+@duration_option(60.0, "Length of a drive, in virtual time.", endless=False)
 @click.option("--timeout", type=Seconds(), default=1800.0, help="Wall time that a drive may take.")
 @json_option
 def command(

@@ -67,3 +67,9 @@ def test_a_platform_file_with_a_wrong_value_is_named(simulate, tmp_path: Path) -
     result = simulate(MAPFILE, "--platform", str(file))
     assert result.exit_code == EXIT_BAD_INPUT
     assert f"{file}: parameter speed of a platform: expected more than 0" in result.output
+
+
+def test_a_simulation_ends(simulate) -> None:
+    result = simulate(MAPFILE, "--duration", "inf")
+    assert result.exit_code == EXIT_BAD_INPUT
+    assert "expected seconds that end, found inf" in result.output

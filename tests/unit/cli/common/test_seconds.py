@@ -31,3 +31,9 @@ def test_anything_else_is_a_usage_error(text: str) -> None:
 def test_an_unknown_unit_is_answered_with_those_that_are_known() -> None:
     with pytest.raises(click.BadParameter, match=r"as in 90s, 5m, 1h30m; found '5x'"):
         Seconds().convert("5x", None, None)
+
+
+@pytest.mark.parametrize("value", ["inf", float("inf")])
+def test_what_has_to_end_refuses_infinity(value: object) -> None:
+    with pytest.raises(click.BadParameter, match="expected seconds that end, found inf"):
+        Seconds(endless=False).convert(value, None, None)
