@@ -89,5 +89,5 @@ def _quoted(text: str) -> str:
 
 def _yaml(value: Any) -> str:
     """Format as YAML, one line for each scalar."""
-    style = {"allow_unicode": True, "default_flow_style": False, "width": 1 << 30}
+    style: dict[str, Any] = {"allow_unicode": True, "default_flow_style": False, "width": 1 << 30}
     return str(yaml.dump(value, Dumper=_Writer, **style))
