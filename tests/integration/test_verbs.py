@@ -137,6 +137,7 @@ def with_values_of_all_types() -> None:
         for number, text in enumerate(STRINGS):
             node.declare_parameter(f"strings.s{number:02}", text)
         node.declare_parameter("several", STRINGS)
+        node.declare_parameter("several.more", 1)
         node.declare_parameter("numbers", [1e20, -0.5, float("inf")])
         node.declare_parameter("flags", [True, False])
         node.declare_parameter("data", [b"\x00", b"\xff"])
@@ -157,7 +158,7 @@ def test_dumped_parameters_are_loaded_as_they_were(start, manycore, tmp_path) ->
     ((section, values),) = read_file(file)
     assert section == "/typed"
     assert [values[f"strings.s{number:02}"] for number in range(len(STRINGS))] == STRINGS
-    assert values["several"] == STRINGS
+    assert (values["several"], values["several.more"]) == (STRINGS, 1)
     assert values["numbers"] == [1e20, -0.5, float("inf")]
     assert values["flags"] == [True, False]
     loaded = manycore("param", "load", "/typed", str(file), status=1).splitlines()

@@ -111,14 +111,18 @@ def parameters_of_file(path: str, node: str, *, wildcard: bool = True) -> list[A
 
 
 def nested(values: Iterable[tuple[str, Any]]) -> dict[str, Any]:
-    """Return parameters nested as in a parameter file: a.b becomes b below a."""
+    """Return parameters nested as in a parameter file: a.b becomes b below a.
+
+    It stays a.b if a is a parameter, too, which then has to come first.
+    """
     root: dict[str, Any] = {}
     for name, value in values:
-        *groups, last = name.split(".")
+        parts = name.split(".")
         place = root
-        for group in groups:
-            place = place.setdefault(group, {})
-        place[last] = value
+        while len(parts) > 1 and isinstance(group := place.setdefault(parts[0], {}), dict):
+            place = group
+            del parts[0]
+        place[".".join(parts)] = value
     return root
 
 
