@@ -8,6 +8,7 @@ import click
 from rmw_manycore_py import __version__
 from rmw_manycore_py.cli.common.group import LazyGroup
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.streams import open_closed_streams
 
 VERBS = {
     "run": "rmw_manycore_py.cli.run:command",
@@ -86,4 +87,5 @@ def cli() -> None:
 
 def main() -> None:
     """Entry point of the command `manycore`."""
+    open_closed_streams()
     cli(prog_name="manycore")

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import signal
 import stat
 import sys
@@ -55,6 +56,16 @@ def manycore(start, platform: str) -> Iterator[Callable[..., Program]]:
 def the_run(platform: str) -> RunDirectory:
     (run,) = runs_of(platform)
     return run
+
+
+@pytest.mark.parametrize("closed", [">&-", "<&- >&- 2>&-"])
+def test_a_run_starts_without_standard_streams(manycore, start, tmp_path, platform, closed) -> None:
+    checks = manycore_command("map", "check", "talker_listener")  # a child reads its launch file
+    starts = manycore_command("up", "-d", write(tmp_path, talker=TALKER))
+    for command in (checks, starts):
+        program = start(["sh", "-c", f"{shlex.join(map(str, command))} {closed}"])
+        assert program.wait() == 0, program
+    assert [node["state"] for node in states(manycore, platform).values()] == ["running"]
 
 
 def states(manycore: Any, platform: str) -> dict[str, dict[str, Any]]:
