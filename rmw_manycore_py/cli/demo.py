@@ -13,6 +13,7 @@ from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import OutputFile
+from rmw_manycore_py.cli.common.printed_run import print_run
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_table
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.launch.run import Mode, Run
@@ -64,7 +65,7 @@ def command(
     placement = resolve(loaded)
     echo(f"{mapfile}: {description(mapfile)}\n")
     run = Run(placement, Mode(loaded))
-    exit_status = run.run(RunPrinter(run.program_names).report, duration_s)
+    exit_status = print_run(run, RunPrinter(run.program_names).report, duration_s)
     if exit_status == 0:
         _explain(mapfile, placement)
     sys.exit(exit_status)

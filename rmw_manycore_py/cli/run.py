@@ -13,6 +13,7 @@ from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import OutputFile
+from rmw_manycore_py.cli.common.printed_run import print_run
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.cli.common.starting import (
@@ -73,7 +74,7 @@ def command(
     time = virtual_time(mapfile, **virtual)
     run, _ = prepared_run(mapfile, joins, nodes, virtual=time, host=host)
     report = _print_json if as_json else RunPrinter(run.program_names).report
-    sys.exit(run.run(report, duration_s, trace=trace))
+    sys.exit(print_run(run, report, duration_s, trace=trace))
 
 
 def _print_json(event: Event) -> None:

@@ -11,6 +11,7 @@ import click
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.node_watch import NodeWatch, checked_answer
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.printed_run import print_run
 from rmw_manycore_py.cli.common.printing import echo, print_notices
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.cli.common.starting import prepared_run, starting_options
@@ -53,7 +54,7 @@ def command(
     run, placement = prepared_run(mapfile, joins, nodes, detached, host=host)
     printer = RunPrinter(run.program_names)
     if not detached:
-        sys.exit(run.run(printer.report))
+        sys.exit(print_run(run, printer.report))
     status = run_in_background(run, printer.report)
     if status == 0:
         option = "" if placement.name == default_platform() else f" --platform {placement.name}"

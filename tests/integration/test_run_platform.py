@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 import signal
 from pathlib import Path
 from typing import Any
@@ -51,6 +52,24 @@ def test_people_see_the_table_the_prefixes_and_the_end(start, platform) -> None:
         run.lines
     )
     assert leftovers(platform) == []
+
+
+@pytest.mark.parametrize("reader", ["grep -q 'Hello World: 2'", "true"])
+def test_a_reader_that_leaves_ends_the_run_with_success(start, platform, reader) -> None:
+    run = shlex.join(map(str, manycore_command("run", TALKER_LISTENER, "--json")))
+    pipeline = start(["bash", "-c", f"set -o pipefail; {run} | {reader}"])
+    assert pipeline.wait() == 0, pipeline
+    assert not pipeline.lines
+    assert leftovers(platform) == []
+
+
+def test_a_reader_that_leaves_does_not_hide_a_failure(start, tmp_path) -> None:
+    code = "import os; print('no luck', flush=True); os._exit(7)"
+    bad = f'{{cluster: 1, core: 1, command: [python3, -c, "{code}"], ros_arguments: false}}'
+    mapfile = write_mapfile(tmp_path, bad=bad, talker=TALKER)
+    run = shlex.join(map(str, manycore_command("run", mapfile)))
+    pipeline = start(["bash", "-c", f"set -o pipefail; {run} | grep -q 'bad failed'"])
+    assert pipeline.wait() == 1, pipeline
 
 
 def test_a_node_that_fails_is_shown_with_its_reason(start, tmp_path, platform) -> None:

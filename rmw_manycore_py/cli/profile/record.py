@@ -13,6 +13,7 @@ import click
 from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.printed_run import print_run
 from rmw_manycore_py.cli.common.printing import print_notices
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.cli.common.starting import prepared_run
@@ -48,7 +49,8 @@ def command(mapfile: Path, duration_s: float, output: Path) -> None:
             if not (isinstance(event, Notice) and str(path) in event.text):  # gone when it is read
                 printer.report(event)
 
-        status = run.run(
+        status = print_run(
+            run,
             report,
             duration_s,
             lambda: started_ns.append(time.monotonic_ns()),
