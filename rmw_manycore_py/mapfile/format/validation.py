@@ -14,6 +14,7 @@ from rmw_manycore_py.errors.suggestions import closest
 from rmw_manycore_py.mapfile.format.document import Document, KeyPath
 from rmw_manycore_py.mapfile.format.model import (
     BridgeSection,
+    HostSection,
     MapfileSections,
     NodeSection,
     OutsideSection,
@@ -156,6 +157,7 @@ def _section(path: KeyPath) -> type[BaseModel]:
         return RespawnSection if path[2] == "respawn" else SchedulingSection
     sections: dict[Any, type[BaseModel]] = {
         "platform": PlatformSection,
+        "hosts": HostSection,
         "topics": TopicSection,
         "nodes": NodeSection,
     }
