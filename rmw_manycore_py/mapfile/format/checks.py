@@ -11,6 +11,7 @@ from rmw_manycore_py.mapfile.format.document import KeyPath
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
 from rmw_manycore_py.mapfile.format.model import NodeSection
 from rmw_manycore_py.platform.topology import Core
+from rmw_manycore_py.ros.names import expand, full_node_name, resolve_topic
 
 # Set from the placement; overriding them would move a node elsewhere.
 NODE_VARIABLES = ("MANYCORE_PLATFORM", "MANYCORE_CLUSTER", "MANYCORE_CORE")
@@ -80,9 +81,33 @@ def check_hosts(mapfile: Mapfile) -> Iterator[Problem]:
             continue
         for key in ("topic_in", "topic_to"):
             for topic in getattr(node, key):
-                if (other := crossing.setdefault(f"{key} {topic}", owner)) != owner:
+                full = _full_topic_name(topic, name, node)
+                if (other := crossing.setdefault(f"{key} {full}", owner)) != owner:
                     expected = f"{topic} bridged by one host: it would come twice"
                     yield problem(("nodes", name, key, topic), expected, f"it on {other}, too")
+
+
+def _full_topic_name(topic: str, name: str, node: NodeSection) -> str:
+    """Return a topic's full name, as far as the mapfile alone has it."""
+    own, _, last = name.rpartition("/")
+    full_name = full_node_name(node.namespace or own, last)
+    return resolve_topic(topic, full_name, tuple(node.remappings.items()))
+
+
+def check_topic_names(mapfile: Mapfile) -> Iterator[Problem]:
+    """Yield topics that a section has twice, and names of a node where there is none."""
+    sections, problem = mapfile.sections, mapfile.document.problem
+    for keys, named in (
+        (("topics",), sections.topics),
+        (("bridge", "routes"), sections.bridge.routes),
+    ):
+        seen: dict[str, str] = {}
+        for name in named:
+            if name.startswith("~"):
+                expected = "a full name: here is no node whose name '~' stands for"
+                yield problem((*keys, name), expected, f"'{name}'")
+            elif (other := seen.setdefault(expand(name, "/"), name)) != name:
+                yield problem((*keys, name), "each topic once", f"'{name}', also as '{other}'")
 
 
 def check_starts(mapfile: Mapfile) -> Iterator[Problem]:

@@ -14,6 +14,7 @@ from rmw_manycore_py.mapfile.format.checks import (
     check_hosts,
     check_placement,
     check_starts,
+    check_topic_names,
 )
 from rmw_manycore_py.mapfile.format.document import (
     Document,
@@ -53,6 +54,7 @@ def load_mapfile(
     problems = [
         *check_placement(mapfile),
         *check_hosts(mapfile),
+        *check_topic_names(mapfile),
         *(check_starts(mapfile) if starts_nodes else ()),
         *check_environment(mapfile),
         *check_files(mapfile),
