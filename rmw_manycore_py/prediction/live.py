@@ -233,11 +233,19 @@ class Answers:
         print(verb, int(self._live.env.now), *words, file=self._answers, flush=True)
 
 
+def live_of(mapfile: Path, profile: Path, platform: str, seed: int) -> Live:
+    """Return the platform of a run with a profile.
+
+    :raises ManycoreError: also if the mapfile lacks a node of the profile.
+    """
+    placement = resolve(load_mapfile(mapfile), to_start=False)
+    return Live(placement, load(profile), target_named(platform), seed)
+
+
 def main(mapfile: str, profile: str, platform: str, seed: str) -> None:
     """Answer on standard output what standard input asks."""
     try:
-        placement = resolve(load_mapfile(Path(mapfile)), to_start=False)
-        live = Live(placement, load(Path(profile)), target_named(platform), int(seed))
+        live = live_of(Path(mapfile), Path(profile), platform, int(seed))
     except ManycoreError as error:
         sys.exit(str(error))
     Answers(live, sys.stdin, sys.stdout).serve()

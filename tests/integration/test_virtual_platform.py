@@ -70,6 +70,15 @@ def test_a_chain_takes_the_simulated_time(case: str, tmp_path: Path, start) -> N
     assert found_us == pytest.approx([expected_us] * 19, rel=0.001)
 
 
+def test_a_profile_of_another_application_is_refused(tmp_path: Path, manycore) -> None:
+    mapfile, profile = tmp_path / "map.yaml", tmp_path / "p.json"
+    mapfile.write_text("nodes: {other: {cluster: 1, command: ['true']}}")
+    save(pipeline(), profile)
+    text = manycore("run", mapfile, "--profile", profile, "--duration", "1", status=2)
+    assert "manycore: the mapfile does not place /camera, which is in the profile" in text
+    assert "started" not in text
+
+
 def test_the_bench_compares_chains_with_the_simulator(tmp_path: Path, manycore) -> None:
     mapfile, profile, platform = (tmp_path / name for name in ("map.yaml", "p.json", "target.yaml"))
     platform.write_text("base: coolidge\nparameters: {speed: {value: 1, source: chosen}}\n")

@@ -115,12 +115,12 @@ def test_a_node_is_killed_and_starts_again_at_the_same_times(mapfile, log_of) ->
 def test_a_node_is_killed_from_outside_at_a_time(mapfile, log_of, manycore) -> None:
     env = f"{{{timed.BIRTHS}: /dev/null}}"
     file = mapfile("talker", "victim", rules=f", respawn: {{delay: 0}}, env: {env}")
-    log = log_of(file, 2, "--virtual", "--instant", "--kill", "victim@1.25")
+    log = log_of(file, 2, "--virtual", "--instant", "--kill", "/victim@1.25")
     births = [line.split()[1] for line in log["victim"] if line.startswith("born")]
     assert births == [f"{START_NS}", f"{START_NS + 5 * NS_PER_S // 4}"]
-    assert "no node 'missing' in this run" in manycore(
-        "run", file, "--virtual", "--kill", "missing@1", status=1
-    )
+    text = manycore("run", file, "--virtual", "--kill", "victm@1", status=2)
+    assert f"--kill: no node 'victm' in {file}; did you mean 'victim'?" in text
+    assert "started" not in text
 
 
 def test_a_node_that_was_to_be_killed_has_not_failed(mapfile, log_of) -> None:

@@ -50,6 +50,10 @@ def prepared_run(
     if host is not None:
         loaded = _of_host(loaded, host)
     loaded = _only(loaded, nodes)
+    if virtual is not None and virtual.kills:
+        victims, times_s = zip(*virtual.kills, strict=True)
+        kills = zip(_names_of("--kill", loaded, victims), times_s, strict=True)
+        virtual = replace(virtual, kills=tuple(kills))
     mode = Mode(loaded, joins, detached, bool(nodes), virtual)
     if mode.virtual is not None and host is not None:
         text = "--host: hosts have no common virtual time; without it, all nodes run on this one"
@@ -124,14 +128,12 @@ def virtual_time(
         raise click.UsageError(f"{' and '.join(names)} exclude each other.")
     if profile is not None:
         # Loaded when needed: most runs have no profile.
-        from rmw_manycore_py.prediction.target_file import target_named
-        from rmw_manycore_py.profile.files import load
-
         require(SIMPY)
-        simulated = platform_name or "host"
-        target_named(simulated)
-        load(profile)
-        return VirtualTime(0.0, PlatformModel(mapfile, profile, simulated, seed or 0), due)
+        from rmw_manycore_py.prediction.live import live_of
+
+        model = PlatformModel(mapfile, profile, platform_name or "host", seed or 0)
+        live_of(model.mapfile, model.profile, model.platform, model.seed)  # or the reason why not
+        return VirtualTime(0.0, model, due)
     if platform_name is not None or seed is not None:
         text = "--platform and --seed need --profile; $MANYCORE_PLATFORM names the run's platform."
         raise click.UsageError(text)
@@ -165,14 +167,19 @@ def _of_host(mapfile: Mapfile, host: str) -> Mapfile:
 
 def _only(mapfile: Mapfile, names: tuple[str, ...]) -> Mapfile:
     """Return a mapfile reduced to some of its nodes."""
-    if not names:
-        return mapfile
+    return mapfile.only(set(_names_of("--node", mapfile, names))) if names else mapfile
+
+
+def _names_of(option: str, mapfile: Mapfile, names: tuple[str, ...]) -> list[str]:
+    """Return the nodes that an option names, as the mapfile has them; a leading slash is optional.
+
+    :raises ManycoreError: if it has no such node.
+    """
     nodes = mapfile.sections.nodes
     known = {name.lstrip("/"): name for name in nodes}
     for name in names:
         if name.lstrip("/") not in known:
             hint = did_you_mean(name, nodes) or f"; it has {', '.join(sorted(nodes))}"
-            text = f"--node: no node '{name}' in {mapfile.path}{hint}"
+            text = f"{option}: no node '{name}' in {mapfile.path}{hint}"
             raise ManycoreError(text, EXIT_BAD_INPUT)
-    wanted = {known[name.lstrip("/")] for name in names}
-    return mapfile.only(wanted)
+    return [known[name.lstrip("/")] for name in names]
