@@ -17,7 +17,7 @@ from typing import Any
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.applying import Applier
 from rmw_manycore_py.launch.connection import Connection
-from rmw_manycore_py.launch.events import Ended, Event, Output, Restarting
+from rmw_manycore_py.launch.events import Ended, Event, Held, Output, Restarting
 from rmw_manycore_py.launch.processes.node_process import NodeProcess
 from rmw_manycore_py.launch.requests import (
     Apply,
@@ -55,6 +55,7 @@ class Control:
         self._runner = runner
         self._applier = applier
         self._connections: list[Connection] = []
+        self._stepping: Connection | None = None  # whose step of virtual time is under way
         self._spare = socket.socket()  # only a descriptor, for `_turn_away`
         runner.watch(listener, self._accept)
 
@@ -62,6 +63,8 @@ class Control:
         """Forward an event to the clients that wait for it."""
         if isinstance(event, Output):
             return
+        if isinstance(event, Held):
+            self._stepping = None
         for connection in tuple(self._connections):
             if connection.wants_events:
                 connection.send(event.as_data())
@@ -80,6 +83,7 @@ class Control:
     def close(self) -> None:
         """Disconnect all clients."""
         self._applier.close()
+        self._stepping = None
         self._runner.unwatch(self._listener)
         deadline_s = time.monotonic() + _GOODBYE_S
         for connection in tuple(self._connections):
@@ -99,11 +103,17 @@ class Control:
                 return
             if len(self._connections) == MAX_CLIENTS + STOP_PLACES:
                 self._connections[MAX_CLIENTS].finish({"error": _FULL})
-            self._connections.append(
-                Connection(client, self._runner, self._serve, self._connections.remove)
-            )
+            self._connections.append(Connection(client, self._runner, self._serve, self._forget))
         except OSError:  # the client has gone, or the selector has no room
             client.close()
+
+    def _forget(self, connection: Connection) -> None:
+        """Forget a client that has left; time stands if it was to stand for it."""
+        self._connections.remove(connection)
+        if connection is self._stepping:
+            self._stepping = None
+            if self._runner.timekeeper is not None and not self._runner.is_stopping:
+                self._runner.timekeeper.hold()
 
     def _turn_away(self) -> None:
         """Refuse a client by the spare descriptor; queued, it would keep the loop awake."""
@@ -164,10 +174,12 @@ class Control:
                 "the time of this run is the wall clock's: only that of `run --virtual` stops"
             )
         connection.wants_events = isinstance(request, Pause) or request.has_end
+        self._stepping = None
         if isinstance(request, Pause):
             keeper.hold()
         else:
             keeper.resume(request.for_s, request.topic, request.single)
+            self._stepping = connection if request.has_end else None
         if connection.wants_events:
             connection.send({})
         else:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import signal
 import sys
 from itertools import pairwise
 from pathlib import Path
@@ -136,5 +137,28 @@ def test_time_stands_and_goes_on_when_asked(tmp_path: Path, start, manycore) -> 
     assert stopped_at_s() <= published_s + 0.1 + 1e-6
     assert stopped_at_s("--topic", "/small", "--for", "0.01") <= published_s + 0.11
     manycore("resume")
+    manycore("stop")
+    assert run.wait() == 0
+
+
+@pytest.mark.parametrize(
+    ("number", "step"),
+    [(signal.SIGINT, ("--for", "1e6")), (signal.SIGKILL, ("--topic", "/nothing"))],
+)
+def test_time_stands_when_the_client_of_a_step_leaves(
+    number: signal.Signals, step: tuple[str, ...], tmp_path: Path, start, manycore
+) -> None:
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text(MAPFILE.format(node=f"{sys.executable}, {timed.__file__}", cluster=1))
+    run = start(manycore_command("run", mapfile, "--virtual", "--instant"))
+    run.wait_for("sink.*0.0")
+    manycore("pause")
+    run.wait_for("time stands at .*: paused")
+    run.skip_output()
+    client = start(manycore_command("step", *step))
+    run.wait_for("sink.*0.0")
+    client.signal(number)
+    client.wait()
+    run.wait_for("time stands at .*: paused")
     manycore("stop")
     assert run.wait() == 0
