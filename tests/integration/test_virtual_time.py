@@ -123,6 +123,14 @@ def test_a_node_is_killed_from_outside_at_a_time(mapfile, log_of, manycore) -> N
     assert "started" not in text
 
 
+def test_a_node_is_killed_in_the_virtual_time_of_the_mapfile(mapfile, manycore) -> None:
+    file = mapfile("talker", "echo")
+    words = ("run", file, "--duration", "2", "--kill", "echo@1")
+    assert "--kill needs virtual time" in manycore(*words, status=2)
+    file.write_text(f"clock: virtual\n{file.read_text()}")
+    assert "manycore | echo finished: killed as asked" in manycore(*words)
+
+
 def test_a_node_that_was_to_be_killed_has_not_failed(mapfile, log_of) -> None:
     file = mapfile("echo", "victim", rules=f", env: {{{timed.BIRTHS}: /dev/null}}")
     log = log_of(file, 2, "--instant", "--kill", "victim@0.7")

@@ -138,9 +138,10 @@ def virtual_time(
         text = "--platform and --seed need --profile; $MANYCORE_PLATFORM names the run's platform."
         raise click.UsageError(text)
     if not (virtual or names):
-        if kills:
+        if not kills:
+            return None
+        if load_mapfile(mapfile).sections.clock != "virtual":
             raise click.UsageError("--kill needs virtual time.")
-        return None
     return VirtualTime(0.0 if instant else factor or 1.0, kills=due)
 
 
