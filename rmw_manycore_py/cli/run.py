@@ -23,6 +23,7 @@ from rmw_manycore_py.cli.common.starting import (
     virtual_time,
 )
 from rmw_manycore_py.launch.events import Event
+from rmw_manycore_py.trace.atomic_file import require_writable
 from rmw_manycore_py.trace.formats import SUFFIXES, require_format
 
 
@@ -71,6 +72,7 @@ def command(
     """
     if trace is not None:
         require_format(trace)
+        require_writable(trace)
     time = virtual_time(mapfile, **virtual)
     run, _ = prepared_run(mapfile, joins, nodes, virtual=time, host=host)
     report = _print_json if as_json else RunPrinter(run.program_names).report

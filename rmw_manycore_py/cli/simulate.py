@@ -34,6 +34,7 @@ from rmw_manycore_py.prediction.sweep import sweep_of
 from rmw_manycore_py.prediction.target_file import target_named
 from rmw_manycore_py.profile.files import load
 from rmw_manycore_py.profile.model import Profile
+from rmw_manycore_py.trace.atomic_file import require_writable
 from rmw_manycore_py.trace.files import save
 from rmw_manycore_py.trace.formats import SUFFIXES
 
@@ -96,6 +97,8 @@ def command(
     parameters are not published, the result is a sweep over them.
     """
     require(SIMPY)
+    if trace_path is not None:
+        require_writable(trace_path)
     placement = resolve(load_mapfile(mapfile), to_start=False)
     profile, target = load(profile_path), target_named(platform_name)
     wanted = [tuple(chain.split()) for chain in chains] or None

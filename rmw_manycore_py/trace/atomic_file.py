@@ -10,6 +10,19 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+
+
+def require_writable(path: Path) -> None:
+    """Raise ManycoreError if `atomic_write` could not open this file: before a long run."""
+    try:
+        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}."):
+            pass
+    except OSError as error:
+        raise ManycoreError(
+            f"{path}: cannot be written: {error.strerror or error}", EXIT_BAD_INPUT
+        ) from error
+
 
 @contextmanager
 def atomic_write(path: Path) -> Iterator[BinaryIO]:

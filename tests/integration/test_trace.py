@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 import json
+import re
 import resource
 import signal
 import time
 from collections import defaultdict
+from pathlib import Path
 
 import pytest
 
+from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from rmw_manycore_py.trace.events import Kind
 from rmw_manycore_py.trace.files import load
 from rmw_manycore_py.trace.flows import NO_THREAD, flows_of
@@ -103,6 +106,30 @@ def test_a_run_is_traced_from_beginning_to_end(start, tmp_path) -> None:
     chatter = [flow for flow in flows if trace.topic_of(int(flow["publisher"])) == "/chatter"]
     # A subscription that resyncs, as with its first hint, finds later messages itself.
     assert any(flow["receive_thread"] != NO_THREAD for flow in chatter)
+
+
+def test_a_run_is_not_started_if_its_trace_cannot_be_written(start, platform) -> None:
+    mapfile = MAPFILES / "talker_listener.yaml"
+    for words in (
+        ("run", mapfile, "--trace", "/sys/trace.json"),
+        ("profile", "record", mapfile, "-o", "/sys/profile.json"),
+    ):
+        refused = start(manycore_command(*words))
+        assert refused.wait() == EXIT_BAD_INPUT, refused
+        assert re.search(r"/sys/\w+\.json: cannot be written: ", refused.output), refused
+        assert "talker" not in refused.output, refused
+
+
+def test_a_trace_whose_directory_has_gone_is_saved_elsewhere(start, tmp_path) -> None:
+    directory = tmp_path / "gone"
+    directory.mkdir()
+    words = ("run", MAPFILES / "talker_listener.yaml", "--trace", directory / "trace.json")
+    run = start(manycore_command(*words), TMPDIR=str(tmp_path))
+    run.wait_for("I heard")
+    directory.rmdir()
+    assert run.stop() == 1, run
+    found = run.wait_for(rf"{directory}/trace\.json: cannot be written: .*; the trace is in (.*)$")
+    assert check_flows(load(Path(found.group(1)))) >= 1
 
 
 def test_a_trace_is_started_stopped_saved_and_evaluated(talking, manycore, start, tmp_path) -> None:
@@ -235,7 +262,9 @@ def test_a_full_disk_costs_no_trace(talking, manycore, start, tmp_path) -> None:
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
     try:
-        save = start(manycore_command("trace", "save", "-o", path))
+        # Else Python would cut the files of compiled modules that it writes.
+        words = manycore_command("trace", "save", "-o", path)
+        save = start(words, PYTHONDONTWRITEBYTECODE="1")
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert save.wait() == 1, save

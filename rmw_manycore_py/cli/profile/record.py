@@ -21,6 +21,7 @@ from rmw_manycore_py.cli.profile.output import output_option, write
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.events import Event, Notice
 from rmw_manycore_py.profile.recorded import profile_of
+from rmw_manycore_py.trace.atomic_file import require_writable
 from rmw_manycore_py.trace.files import load
 
 
@@ -39,6 +40,7 @@ def command(mapfile: Path, duration_s: float, output: Path) -> None:
 
     They are traced as with manycore run --trace; what they do while nodes start is left out.
     """
+    require_writable(output)
     started_ns: list[int] = []
     run, _ = prepared_run(mapfile, False, ())
     printer = RunPrinter(run.program_names)

@@ -25,10 +25,7 @@ def save(trace: Trace, path: Path) -> None:
             else:
                 perfetto.write(trace, file)
     except OSError as error:
-        raise ManycoreError(
-            f"{path}: cannot be written: {error.strerror or error}; "
-            "the trace is kept: save it elsewhere"
-        ) from error
+        raise ManycoreError(f"{path}: cannot be written: {error.strerror or error}") from error
 
 
 def load(path: Path) -> Trace:

@@ -24,5 +24,8 @@ def save_recorded(platform: str, path: Path) -> Trace:
             raise ManycoreError(
                 f"platform {platform} has recorded nothing since the last trace was saved"
             )
-        save(trace, path)
+        try:
+            save(trace, path)
+        except ManycoreError as error:
+            raise ManycoreError(f"{error}; the trace is kept: save it elsewhere") from error
     return trace
