@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 import yaml
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, FiniteFloat, ValidationError
 
 from rmw_manycore_py.errors import (
     EXIT_BAD_INPUT,
@@ -24,7 +24,7 @@ _EXPECTED = "a platform: base, cpus, network, and parameters with value and sour
 
 class _Value(BaseModel):
     model_config = ConfigDict(extra="forbid")
-    value: float
+    value: FiniteFloat
     source: Source
 
 
@@ -53,7 +53,7 @@ def target_named(name: str) -> Target:
         content = _File.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
     except ValidationError as error:
         raise FileError(Problem(path, 0, *_with_expected(*invalid_field(error)))) from error
-    except (yaml.YAMLError, UnicodeDecodeError, OSError) as error:
+    except (yaml.YAMLError, ValueError, OSError) as error:  # ValueError: also of a date, as YAML's
         raise FileError(Problem(path, 0, "", _EXPECTED, str(error))) from error
     base = TARGETS[content.base]
     target = replace(

@@ -75,8 +75,8 @@ def play(platform: str | None, settings: Settings, *, as_json: bool) -> None:
 def _virtual(settings: Settings) -> Position:
     if settings.clock_hz is not None or settings.paused:
         raise ManycoreError(
-            "--clock and --paused: in virtual time all nodes have its clock already, and "
-            "`manycore pause` stops it",
+            "--clock and --start-paused: in virtual time all nodes have its clock already, "
+            "and `manycore pause` stops it",
             EXIT_BAD_INPUT,
         )
     return Position(settings.rate, now_ns=now_ns, sleep=time.sleep)

@@ -44,18 +44,27 @@ def dotted(path: KeyPath) -> str:
 
 def read_text(path: Path, problem: Problem | None = None) -> str:
     """Return a file's text; `problem` replaces the default problem if it cannot be read."""
+    content = read_bytes(path, problem)
+    try:
+        return content.decode("utf-8")
+    except ValueError as error:
+        raise _unreadable(path, problem, "bytes that are not UTF-8") from error
+
+
+def read_bytes(path: Path, problem: Problem | None = None) -> bytes:
+    """Return what is in a text file, of any encoding; see `read_text`."""
     try:
         with path.open("rb") as file:
             content = file.read(MAX_BYTES + 1)
-        text = content.decode("utf-8")
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "bytes that are not UTF-8"
-        raise MapfileError(
-            problem or Problem(path, 0, "", "a readable text file", reason)
-        ) from error
+    except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
+        raise _unreadable(path, problem, getattr(error, "strerror", None) or str(error)) from error
     if len(content) > MAX_BYTES:
         raise MapfileError(Problem(path, 0, "", f"at most {MAX_BYTES} bytes", "more"))
-    return text
+    return content
+
+
+def _unreadable(path: Path, problem: Problem | None, reason: str) -> MapfileError:
+    return MapfileError(problem or Problem(path, 0, "", "a readable text file", reason))
 
 
 def read_yaml(

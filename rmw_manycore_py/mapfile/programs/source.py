@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rmw_manycore_py.errors import MapfileError, Problem, what_is_wrong
-from rmw_manycore_py.mapfile.format.document import read_text
+from rmw_manycore_py.mapfile.format.document import read_bytes
 
 _CALLS = {
     "create_publisher": "publish",
@@ -110,7 +110,7 @@ def _interfaces(tree: ast.Module) -> dict[str, int]:
 
 def _parse(file: Path) -> ast.Module:
     try:
-        return ast.parse(read_text(file), str(file))
+        return ast.parse(read_bytes(file), str(file))  # knows byte order marks and cookies
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = getattr(error, "lineno", None) or 0
         raise MapfileError(Problem(file, line, "", "valid Python", what_is_wrong(error))) from error

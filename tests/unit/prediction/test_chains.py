@@ -179,6 +179,8 @@ def test_a_platform_comes_from_a_file(tmp_path: Path) -> None:
         ("base: host\nparameters: {sped: {value: 1, source: fitted}}", "parameter sped"),
         ("base: host\nparameters: {speed: {value: 0, source: fitted}}", "more than 0"),
         ("base: host\nparameters: {speed: {value: 1, source: guessed}}", "parameters.speed.source"),
+        ("base: host\nparameters: {speed: {value: .nan, source: fitted}}", "speed.value"),
+        ("base: 2026-99-99", "expected a platform"),
         ("[", "expected a platform"),
     ],
 )

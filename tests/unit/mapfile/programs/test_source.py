@@ -75,6 +75,16 @@ def test_a_file_that_is_not_python_is_refused(tmp_path: Path) -> None:
         scan_text(tmp_path, "class:\n")
 
 
+@pytest.mark.parametrize(
+    ("begin", "encoding"), [("", "utf-8-sig"), ("# coding: latin-1\n", "latin-1")]
+)
+def test_sources_in_other_encodings_are_read(tmp_path: Path, begin: str, encoding: str) -> None:
+    path = tmp_path / "node.py"
+    text = "import rclpy\n# Größe\nrclpy.create_node('größe_m')\n"
+    path.write_bytes(f"{begin}{text}".encode(encoding))
+    assert read_source(path).is_program
+
+
 def test_publishers_of_lifecycle_nodes_are_found(tmp_path: Path) -> None:
     (node,) = scan_text(
         tmp_path,
