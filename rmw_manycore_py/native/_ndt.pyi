@@ -132,7 +132,7 @@ class SerialMatcher:
     `maps`: levels of one map, coarsest first; a scan is aligned to each, from where the one before
     has led, from `maps[first]` on. Scores and derivatives are those of the last but `polishing`
     maps: the latter only refine the pose. An alignment ends before these and the scored map unless
-    it begins there with a score above `surpassed`. Few points' fit has to exceed `least_fit` for
+    it begins there with a score above `surpassed`. Few points' fit has to exceed `min_fit` for
     the pose to be refined.
     """
 
@@ -146,7 +146,7 @@ class SerialMatcher:
         first: int = 0,
         polishing: int = 0,
         surpassed: float = ...,
-        least_fit: float = ...,
+        min_fit: float = ...,
     ) -> NewtonResult: ...
     def evaluate(
         self,
@@ -217,7 +217,7 @@ class WorkerGroup:
         first: int = 0,
         polishing: int = 0,
         surpassed: float = ...,
-        least_fit: float = ...,
+        min_fit: float = ...,
     ) -> NewtonResult: ...
     def evaluate(
         self,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "platform/error.hpp"
@@ -56,11 +57,6 @@ bool may_refine(const NewtonResult & fine, const MapView & map, const NewtonResu
          share_of(fine.at) >= polish_points_share * share_of(scored.at);
 }
 
-bool is_concave(const Matrix6 & hessian) {
-  const auto values = symmetric_eigen(hessian).values;
-  return std::all_of(values.begin(), values.end(), [](double value) { return value < 0; });
-}
-
 /// An alignment from level to level. Few points, on the scored level fewer ones first, approach the
 /// maximum of that level; all of them only refine the pose.
 class Steps {
@@ -109,7 +105,7 @@ private:
 
   bool fits_too_little(const NewtonResult & found) const {
     return found.outcome == Outcome::converged &&
-           found.at.nearest <= levels_.least_fit * static_cast<double>(found.at.scan_points);
+           found.at.nearest <= levels_.min_fit * static_cast<double>(found.at.scan_points);
   }
 
   /// Aligns to the scored level; `first` of the result is that of the first steps.
@@ -197,8 +193,9 @@ private:
     problem_.map = levels_.maps[level];
     problem_.scan = whole_;
     const Derivatives at = evaluate_(problem_, found.pose);
-    const Vector6 step = newton_step(at.hessian, at.gradient);
-    if (!is_concave(at.hessian) || !(norm(step) <= last_step_limit)) {
+    const std::optional<Matrix6> covariance = laplace_covariance(at.hessian);
+    const Vector6 step = covariance ? *covariance * at.gradient : Vector6{};
+    if (!covariance || !(norm(step) <= last_step_limit)) {
       MatchOptions options = problem_.options;
       options.max_iterations = std::min(options.max_iterations, max_last_steps);
       return maximised(level, whole_, found.pose, options);
@@ -247,7 +244,7 @@ void check_levels(const Levels & levels) {
 
 Descent descent_of(const Levels & levels) {
   check_levels(levels);
-  Descent out{{}, levels.polishing, levels.surpassed, levels.least_fit};
+  Descent out{{}, levels.polishing, levels.surpassed, levels.min_fit};
   for (size_t i = levels.first; i < levels.maps.size(); ++i) {
     out.maps.push_back(levels.maps[i]->view());
   }

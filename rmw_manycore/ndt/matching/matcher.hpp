@@ -25,7 +25,7 @@ struct Levels {
   double surpassed = no_score;
   /// Fit (sum of the points' best scores, per point of the scan) that few points have to exceed for
   /// the pose to be refined.
-  double least_fit = no_score;
+  double min_fit = no_score;
 
   static constexpr double no_score = -std::numeric_limits<double>::infinity();
 };
@@ -56,7 +56,7 @@ struct Descent {
   std::vector<MapView> maps;
   size_t polishing = 0;
   double surpassed = Levels::no_score;
-  double least_fit = Levels::no_score;
+  double min_fit = Levels::no_score;
 
   /// The map of scores and derivatives.
   const MapView & scored() const { return maps[maps.size() - polishing - 1]; }

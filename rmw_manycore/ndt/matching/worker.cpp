@@ -110,7 +110,7 @@ void Worker::align(uint32_t job) {
   job_ = job;
   pass_ = 0;
   waited_ns_ = 0;
-  Descent levels{{}, what.polishing, what.surpassed, what.least_fit};
+  Descent levels{{}, what.polishing, what.surpassed, what.min_fit};
   for (size_t i = what.first_level; i < what.end_level; ++i) {
     levels.maps.push_back(maps_[i].map.view());
   }

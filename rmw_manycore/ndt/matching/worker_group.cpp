@@ -87,7 +87,7 @@ void WorkerGroup::put_levels(const Levels & levels) {
   what.first_level = static_cast<uint32_t>(levels.first);
   what.polishing = static_cast<uint32_t>(levels.polishing);
   what.surpassed = levels.surpassed;
-  what.least_fit = levels.least_fit;
+  what.min_fit = levels.min_fit;
   for (size_t i = 0; i < levels.maps.size(); ++i) {
     name_part(what.maps[i], levels.maps[i]->header().id, levels.maps[i]->memory());
   }

@@ -33,7 +33,7 @@ struct Job {
   uint32_t end_level;           ///< behind the last level of the alignment
   uint32_t polishing;           ///< number of the last of these that only refine the pose
   double surpassed;             ///< score that other starts reached
-  double least_fit;             ///< that a result has to exceed to be refined
+  double min_fit;               ///< that a result has to exceed to be refined
   SharedPart scan;
   uint64_t points;
   MatchOptions options;

@@ -31,13 +31,13 @@ public:
   NewtonResult align(
     const Maps & maps, const FloatPoints & points, const PoseMatrix & guess,
     const std::optional<std::pair<double, double>> & position_m, size_t first, size_t polishing,
-    double surpassed, double least_fit) {
+    double surpassed, double min_fit) {
     std::optional<Regularization> regularization;
     if (position_m) {
       regularization = Regularization{scale_factor_, position_m->first, position_m->second};
     }
     const nanobind::gil_scoped_release released;
-    const Levels levels{maps, first, polishing, surpassed, least_fit};
+    const Levels levels{maps, first, polishing, surpassed, min_fit};
     return matcher_.align(levels, points.data(), points.shape(0), pose_from(guess), regularization);
   }
 
@@ -70,7 +70,7 @@ nanobind::class_<Bound<Matcher>> bind_matcher(nanobind::module_ & module, const 
       "align", &Self::align, nanobind::arg("maps"), nanobind::arg("points"), nanobind::arg("guess"),
       nanobind::arg("regularization_position_m") = nanobind::none(), nanobind::arg("first") = 0,
       nanobind::arg("polishing") = 0, nanobind::arg("surpassed") = Levels::no_score,
-      nanobind::arg("least_fit") = Levels::no_score)
+      nanobind::arg("min_fit") = Levels::no_score)
     .def(
       "evaluate", &Self::evaluate, nanobind::arg("maps"), nanobind::arg("points"),
       nanobind::arg("pose"), nanobind::arg("polishing") = 0);

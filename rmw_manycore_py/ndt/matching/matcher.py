@@ -209,8 +209,8 @@ class Matcher:
         again = partial(self._looked_again, convinces=self._convinces)
         looks = (again, self._looked_closer, self._looked_around)
         if self.options.coarse_levels:
-            least_fit = CONVINCING_SHARE * self._require_map().own_likelihood
-            asked = replace(asked, least_fit=least_fit)
+            min_fit = CONVINCING_SHARE * self._require_map().own_likelihood
+            asked = replace(asked, min_fit=min_fit)
         found = self._weighed(asked, self._aligned(asked))
         for look in looks if is_far else (self._looked_closer,):
             if found.is_refused or self._convinces(found):
@@ -222,7 +222,7 @@ class Matcher:
         """Return a result that all points refine."""
         if not found.is_unfinished:
             return found
-        there = replace(asked, guess=found.T_map_sensor, least_fit=-np.inf)
+        there = replace(asked, guess=found.T_map_sensor, min_fit=-np.inf)
         done = self._aligned(there, is_close=True).continued_from(found)
         explained = found.explained_score
         return replace(done, first=found.first, looks=found.looks, explained_score=explained)
@@ -286,7 +286,7 @@ class Matcher:
         with translate_native_errors(CANNOT_WORK):
             result = self._native.align(
                 *(levels, level.points, level.guess, asked.position),
-                *(first, polishing, surpassed, asked.least_fit),
+                *(first, polishing, surpassed, asked.min_fit),
             )
         if self.on_aligned is not None:
             self.on_aligned(begin_ns)

@@ -25,12 +25,12 @@ class NativeMatcher(Protocol):
         first: int = 0,
         polishing: int = 0,
         surpassed: float = -np.inf,
-        least_fit: float = -np.inf,
+        min_fit: float = -np.inf,
     ) -> _ndt.NewtonResult:
         """Align from a guess to one map after the other; the last `polishing` refine the pose.
 
         :param surpassed: minimum score with which the scored map is begun, else the end.
-        :param least_fit: fit that few points have to exceed for the pose to be refined.
+        :param min_fit: fit that few points have to exceed for the pose to be refined.
         """
         ...
 

@@ -24,13 +24,13 @@ from rmw_manycore_py.ndt.matching.options import MatcherOptions
 class Question:
     """A scan (N, 3), its guess (4, 4), and the position of the regularization pose.
 
-    :param least_fit: fit up to which a result remains unfinished.
+    :param min_fit: fit up to which a result remains unfinished.
     """
 
     scan: ScanPoints
     guess: Pose
     position: Position | None
-    least_fit: float = -np.inf
+    min_fit: float = -np.inf
 
 
 def question_of(

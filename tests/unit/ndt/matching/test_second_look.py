@@ -136,8 +136,8 @@ def test_a_result_of_few_points_that_fits_too_little_is_not_refined() -> None:
     matcher = _ndt.SerialMatcher(match_options(OPTIONS))
     scan = scan_points(np.tile(SCAN, (-(-10_000 // len(SCAN)), 1)))
 
-    def aligned(least_fit: float) -> _ndt.NewtonResult:
-        return matcher.align(MAP.levels, scan, NEAR, None, 1, 1, -np.inf, least_fit)
+    def aligned(min_fit: float) -> _ndt.NewtonResult:
+        return matcher.align(MAP.levels, scan, NEAR, None, 1, 1, -np.inf, min_fit)
 
     finished = aligned(-np.inf)
     assert finished.at.scan_points == len(scan)
