@@ -22,9 +22,10 @@ from support.nodes.parted import HEARD, HOSTS, Parted
 from support.nodes.serving import call, count, send_goal, serve
 from support.nodes.speakers import (
     STRING,
+    answer,
     count_among_newcomers,
     count_as_many,
-    flood,
+    flood_by_answers,
     hear,
     hear_counters,
     hear_gids,
@@ -159,14 +160,18 @@ def test_a_host_that_does_not_read_costs_only_its_own_messages(platforms, start,
     hosts = Parted(start, tmp_path, {host: locator(free_port()) for host in (*HOSTS, "c")})
     platforms += hosts.platforms.values()
     hosts.run_all()
-    hearers = {host: hosts.node(host, hear, "/much", {}) for host in "bc"}
-    hosts.node("a", flood, "/much", 50_000, 400)  # 400: two seconds for the other host
-    for hearer in hearers.values():
-        hearer.wait_for("^heard x")
+    hosts.node("c", hear, "/much", {})
+    answerer = hosts.node("b", answer, "/much", "/heard", 100)
+    flooder = hosts.node("a", flood_by_answers, "/much", "/heard", 100, 2)
+    flooder.wait_for("^ready$")
+    wait_until(lambda: hosts.row("c", "inward", "/much"), "the topic crosses")
     reader = hosts.row("c", "inward", "/much")["pid"]
     os.kill(reader, signal.SIGSTOP)
     try:
-        wait_until(lambda: hosts.row("a", "outward", "/much", peer="c")["lost"] > 100, "losses")
+        flooder.signal(signal.SIGUSR1)
+        wait_until(lambda: hosts.row("a", "outward", "/much", peer="c").get("lost"), "losses")
+        answerer.skip_output()
+        answerer.wait_for("^answered$")
         assert hosts.row("a", "outward", "/much", peer="b")["lost"] == 0
     finally:
         os.kill(reader, signal.SIGCONT)

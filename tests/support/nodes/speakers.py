@@ -78,6 +78,41 @@ def flood(topic: str, size: int = 200_000, depth: int = 10) -> None:
         spin_until(node, lambda: False, 1e6)
 
 
+def answer(topic: str, answers: str, window: int) -> None:
+    """Publish an answer to each message, once somebody hears answers; see `flood_by_answers`."""
+    with peer_node("answerer") as node:
+        publisher = node.create_publisher(type_of(STRING), answers, window)
+        spin_until(node, publisher.get_subscription_count)
+
+        def heard(_: Any) -> None:
+            publisher.publish(type_of(STRING)(data="heard"))
+            announce("answered")
+
+        node.create_subscription(type_of(STRING), topic, heard, window)
+        spin_until(node, lambda: False, 1e6)
+
+
+def flood_by_answers(topic: str, answers: str, window: int, n_subscriptions: int) -> None:
+    """Publish, from SIGUSR1 on, as fast as one subscriber answers.
+
+    At most `window` messages are under way to it: it loses none, however slow it is.
+    """
+    told: list[int] = []
+    signal.signal(signal.SIGUSR1, lambda number, _: told.append(number))
+    with peer_node("flooder") as node:
+        message = type_of(STRING)(data="x" * 50_000)
+        publisher = node.create_publisher(type_of(STRING), topic, window)
+        node.create_subscription(
+            type_of(STRING), answers, lambda _: publisher.publish(message), window
+        )
+        spin_until(node, lambda: publisher.get_subscription_count() == n_subscriptions)
+        announce("ready")
+        spin_until(node, lambda: told)
+        for _ in range(window):
+            publisher.publish(message)
+        spin_until(node, lambda: False, 1e6)
+
+
 def say_as(name: str, topic: str, words: dict[str, Any]) -> None:
     """Publish the node's name, again and again."""
     with peer_node(name) as node:

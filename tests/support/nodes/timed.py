@@ -21,6 +21,7 @@ from std_srvs.srv import Trigger
 from rmw_manycore_py.native._transport import Process
 
 KILLED_AT_S = 1.0
+N_CALLS = 6
 YEAR_2020_S = 1_577_836_800
 BIRTHS = "BIRTHS"  # variable of the environment: the path of a file
 
@@ -100,16 +101,22 @@ class Asker(Timed):
 
 
 class Threads(Timed):
-    """A callback blocks a thread of the executor until another thread's callback ran."""
+    """A callback blocks a thread of the executor until another thread's callback ran.
+
+    It calls `N_CALLS` times: a thread that has no answer when the server stops waits for ever.
+    """
 
     def __init__(self) -> None:
         super().__init__("threads")
         group = ReentrantCallbackGroup()
         self._client = self.create_client(Trigger, "ask", callback_group=group)
         self._client.wait_for_service()
-        self.create_timer(0.25, self._ask, callback_group=group)
+        self._timer = self.create_timer(0.25, self._ask, callback_group=group)
 
     def _ask(self) -> None:
+        self._number += 1
+        if self._number == N_CALLS:
+            self._timer.cancel()
         answer = self._client.call(Trigger.Request())
         self.say(answer.message)
 
