@@ -15,8 +15,8 @@
  * OTHER=1: the callback is replaced, too; it takes a lock of the user, and a further thread that
  * holds this lock destroys another entity.
  *
- * RUN PUBLISHERS=2 MESSAGES=1 OTHER=0 ELSEWHERE=0
- * RUN PUBLISHERS=1 MESSAGES=1 OTHER=1 ELSEWHERE=0
+ * RUN PUBLISHERS=2 MESSAGES=1 OTHER=0 ELSEWHERE=0 (long)
+ * RUN PUBLISHERS=1 MESSAGES=1 OTHER=1 ELSEWHERE=0 (long)
  * RUN PUBLISHERS=1 MESSAGES=2 OTHER=0 ELSEWHERE=1
  * RUN PUBLISHERS=2 MESSAGES=2 OTHER=0 ELSEWHERE=0 (long)
  *

@@ -14,7 +14,7 @@
  * BUG 1: block attached before it is cleared
  * BUG 2: owner stored before taken
  * BUG 3: row closed before the last release
- * BUG 4 (reversed): a killed reader's row is closed before its process has stopped
+ * BUG 4 (reversed) (long): a killed reader's row is closed before its process has stopped
  * BUG 5: a seat is given again although the row of its reader is live
  * BUG 6: block attached before the seat's former owner is cleared from it, but after taken
  */
