@@ -20,7 +20,7 @@ from pathlib import Path
 
 from support import TESTS
 
-FEW = 500
+FEW = 200  # the others are left to tests/stress
 MANY = int(os.environ.get("MANYCORE_TEST_COMPARED_FILES", "10000"))
 # Far above what any input takes on a busy machine: only an endless loop takes longer.
 HANG_S = 120

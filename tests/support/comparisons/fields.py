@@ -25,7 +25,10 @@ from typing import Any
 import rmw_manycore_fields as fields
 from support.generated.field_values import Made, made_values
 
+Caught = list[warnings.WarningMessage]
+
 NUMBERS = re.compile(r"(sequence<)?(u?int\d+|float|double|boolean|octet|char)(, \d+)?(>|\[\d+\])")
+ADDRESS = re.compile(r"0x[0-9a-f]+")
 MAX_SHOWN = 20
 MODES = ((False, False), (False, True), (True, False), (True, True))  # checked, constructed
 # One message per type code, which gets all values in all modes. Every other field gets a part of
@@ -54,27 +57,32 @@ def number_fields(message: type) -> list[str]:
 
 
 def outcome(message: type, field: str, made: Made, checked: bool, constructed: bool) -> Any:
-    """Return the value that the field has at the end, or the error, and all warnings."""
+    """Return the value that the field has at the end, or the error."""
     value = made()
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        try:
-            if constructed:
-                target = message(check_fields=checked, **{field: value})
-            else:
-                target = message(check_fields=checked)
-                setattr(target, field, value)
-            result = getattr(target, field)
-            is_array = isinstance(result, array.array)
-            content = result.tobytes() if is_array else repr(result)
-            told: Any = (type(result), is_array and result.typecode, content, result is value)
-        except Exception as error:
-            told = (type(error), str(error))
-    texts = [re.sub(r"0x[0-9a-f]+", "", repr(part)) for part in told]
-    return texts, [(warning.category, str(warning.message)) for warning in caught]
+    try:
+        if constructed:
+            target = message(check_fields=checked, **{field: value})
+        else:
+            target = message(check_fields=checked)
+            setattr(target, field, value)
+        result = getattr(target, field)
+        is_array = isinstance(result, array.array)
+        content = result.tobytes() if is_array else repr(result)
+        told: Any = (type(result), is_array and result.typecode, content, result is value)
+    except Exception as error:
+        told = (type(error), str(error))
+    return ADDRESS.sub("", repr(told))
 
 
 def main() -> None:
+    # Recorded all the time: to begin and end that costs as much as a comparison.
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        shown = compare_all(caught)
+    json.dump(shown, sys.stdout, indent=1)
+
+
+def compare_all(caught: Caught) -> dict[str, Any]:
     values = list(made_values().items())
     counts = {"values": len(values), "classes": 0, "fields": 0, "fast_fields": 0, "comparisons": 0}
     differences: list[tuple[str, ...]] = []
@@ -89,18 +97,21 @@ def main() -> None:
             for name, made in values if is_own else values[first % STEP :: STEP]:
                 counts["comparisons"] += len(modes)
                 for mode in modes:
-                    difference = compared(module, message, field, made, *mode)
+                    difference = compared(caught, module, message, field, made, *mode)
                     where = f"{message.__module__}.{message.__name__}.{field} = {name}"
                     differences += [(where, *difference)] if difference else []
-    shown = {**counts, "different": len(differences), "differences": differences[:MAX_SHOWN]}
-    json.dump(shown, sys.stdout, indent=1)
+    return {**counts, "different": len(differences), "differences": differences[:MAX_SHOWN]}
 
 
-def compared(module: ModuleType, message: type, field: str, made: Made, *mode: bool) -> list[str]:
-    """Return what each of the two does, if they differ."""
+def compared(
+    caught: Caught, module: ModuleType, message: type, field: str, made: Made, *mode: bool
+) -> list[str]:
+    """Return what each of the two does, with all warnings, if they differ."""
     outcomes = []
     for module.array in (array, fields.fast_array()):
-        outcomes.append(str(outcome(message, field, made, *mode)))
+        caught.clear()
+        told = outcome(message, field, made, *mode)
+        outcomes.append(f"{told} {[(one.category, str(one.message)) for one in caught]}")
     return outcomes if outcomes[0] != outcomes[1] else []
 
 

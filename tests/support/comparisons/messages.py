@@ -26,7 +26,7 @@ from support.generated.messages import classes_with_number_fields, made_message,
 from support.nodes.ros import spin_until
 
 ROUNDS = 3
-DAMAGED = 12
+DAMAGED = 6
 EDGE_BYTES = 300  # at either end of a message, where its lengths and strings are
 
 

@@ -6,12 +6,12 @@ from __future__ import annotations
 import array
 import importlib
 import random
-import struct
 import sysconfig
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import rosidl_parser.definition as definition
 
 import rmw_manycore_arrays as arrays
@@ -70,8 +70,6 @@ def _value(default: Any, kind: Any, source: random.Random, is_large: bool) -> An
 
 
 def _like(default: Any, values: list[Any]) -> Any:
-    import numpy as np
-
     return np.array(values, default.dtype)
 
 
@@ -85,7 +83,8 @@ def _numbers(default: Any, kind: Any, source: random.Random, is_large: bool) -> 
     count = min(count, getattr(kind, "maximum_size", count))
     content = source.randbytes(count * default.itemsize)
     if default.typecode in "fd":  # no NaN, which is not equal to itself
-        content = struct.pack(f"{count}{default.typecode}", *(c / 4 for c in content[:count]))
+        quarters = np.frombuffer(content, np.uint8, count) / 4
+        content = quarters.astype(default.typecode).tobytes()
     return array.array(default.typecode, content)
 
 

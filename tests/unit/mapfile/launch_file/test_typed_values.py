@@ -13,7 +13,7 @@ from support.generated.launch_files import node, tag, xml
 
 pytestmark = pytest.mark.unit
 
-SIZE = FEW // 5  # of a part: several processes share the work
+SIZE = FEW // 2  # of a part: two processes share the work
 
 
 @pytest.mark.parametrize("first", range(0, FEW, SIZE))
