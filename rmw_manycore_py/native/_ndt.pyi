@@ -53,6 +53,11 @@ class VoxelMap:
     ) -> NDArray[np.float32]:
         """Return (N, 4): score, height in the column, known columns around, 1 behind a surface."""
 
+    def columns_around(
+        self, points: NDArray[np.float32], pose: NDArray[np.float64]
+    ) -> NDArray[np.uint8]:
+        """Return of each point (N, 3) the known columns around (N,), 0 where its own is empty."""
+
     @staticmethod
     def attach(shared_path: str) -> VoxelMap:
         """Return the map that another process named by `shared_path`; it outlives that process."""

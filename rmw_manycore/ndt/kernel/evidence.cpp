@@ -91,7 +91,9 @@ class Columns {
 public:
   explicit Columns(const MapView & map) : map_(map) {}
 
-  const Column & at(int32_t x, int32_t y) {
+  const Column & at(const Cell & cell) {
+    const int32_t x = cell[0];
+    const int32_t y = cell[1];
     const auto [entry, is_new] = columns_.try_emplace(key_of(x, y));
     if (is_new) {
       entry->second.lowest_m = lowest_m(x, y);
@@ -206,6 +208,33 @@ bool is_past_map(const MapView & map, const Vector3 & from_m, const Vector3 & to
   return false;
 }
 
+/// Places of a scan's points, relative to the map's origin.
+class Places {
+public:
+  Places(const MapView & map, const Pose6 & pose) : sensor_in_map_(to_matrix(pose)) {
+    for (size_t i = 0; i < 3; ++i) {
+      from_m_[i] = sensor_in_map_[4 * i + 3] - map.header->origin_m[i];
+    }
+  }
+
+  /// That of the sensor.
+  const Vector3 & from_m() const { return from_m_; }
+
+  Vector3 of(const float * point) const {
+    Vector3 place_m = from_m_;
+    for (size_t i = 0; i < 3; ++i) {
+      for (size_t j = 0; j < 3; ++j) {
+        place_m[i] += sensor_in_map_[4 * i + j] * static_cast<double>(point[j]);
+      }
+    }
+    return place_m;
+  }
+
+private:
+  Pose4x4 sensor_in_map_;
+  Vector3 from_m_{};
+};
+
 }  // namespace
 
 void point_evidence(
@@ -213,29 +242,32 @@ void point_evidence(
   PointEvidence * evidence) {
   std::vector<float> scores(count);
   point_scores(map, outlier_ratio, pose, xyz_m, count, scores.data());
-  const Pose4x4 sensor_in_map = to_matrix(pose);
-  Vector3 from_m;
-  for (size_t i = 0; i < 3; ++i) {
-    from_m[i] = sensor_in_map[4 * i + 3] - map.header->origin_m[i];
-  }
+  const Places places(map, pose);
   Columns columns(map);
   for (size_t point = 0; point < count; ++point) {
-    const float * const p = xyz_m + 3 * point;
-    Vector3 place_m = from_m;
-    for (size_t i = 0; i < 3; ++i) {
-      for (size_t j = 0; j < 3; ++j) {
-        place_m[i] += sensor_in_map[4 * i + j] * static_cast<double>(p[j]);
-      }
-    }
+    const Vector3 place_m = places.of(xyz_m + 3 * point);
     if (!is_finite(place_m)) {
       evidence[point] = {std::nanf(""), std::nanf(""), 0, 0};
       continue;
     }
-    const Cell cell = cell_of(in_cells(*map.header, place_m));
-    const Column & column = columns.at(cell[0], cell[1]);
+    const Column & column = columns.at(cell_of(in_cells(*map.header, place_m)));
     evidence[point] = {
       scores[point], static_cast<float>(place_m[2]) - column.lowest_m, column.around,
-      is_past_map(map, from_m, place_m) ? 1.0F : 0.0F};
+      is_past_map(map, places.from_m(), place_m) ? 1.0F : 0.0F};
+  }
+}
+
+void columns_around(
+  const MapView & map, const Pose6 & pose, const float * xyz_m, size_t count, uint8_t * around) {
+  const Places places(map, pose);
+  Columns columns(map);
+  for (size_t point = 0; point < count; ++point) {
+    const Vector3 place_m = places.of(xyz_m + 3 * point);
+    around[point] = 0;
+    if (is_finite(place_m)) {
+      const Column & column = columns.at(cell_of(in_cells(*map.header, place_m)));
+      around[point] = std::isnan(column.lowest_m) ? 0 : static_cast<uint8_t>(column.around);
+    }
   }
 }
 

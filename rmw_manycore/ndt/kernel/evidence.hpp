@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "ndt/common/pose.hpp"
 #include "ndt/map/voxel_map.hpp"
@@ -22,5 +23,10 @@ static_assert(sizeof(PointEvidence) == 4 * sizeof(float));
 void point_evidence(
   const MapView & map, double outlier_ratio, const Pose6 & pose, const float * xyz_m, size_t count,
   PointEvidence * evidence);
+
+/// Writes for `count` points (x, y, z [m], sensor frame) at a pose how many of the eight columns
+/// around theirs have voxels; 0 where the point's own has none. Runs on the calling thread.
+void columns_around(
+  const MapView & map, const Pose6 & pose, const float * xyz_m, size_t count, uint8_t * around);
 
 }  // namespace manycore::ndt

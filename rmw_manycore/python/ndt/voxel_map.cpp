@@ -45,6 +45,18 @@ nb::ndarray<nb::numpy, float, nb::shape<-1, 4>> evidence_of_points(
   return nb::ndarray<nb::numpy, float, nb::shape<-1, 4>>(&evidence->score, {count, 4}, owner);
 }
 
+nb::ndarray<nb::numpy, uint8_t, nb::ndim<1>> columns_around_points(
+  const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose) {
+  const size_t count = points.shape(0);
+  auto * const around = new uint8_t[count];
+  const nb::capsule owner(around, [](void * p) noexcept { delete[] static_cast<uint8_t *>(p); });
+  {
+    const nb::gil_scoped_release released;
+    columns_around(map.view(), pose_from(pose), points.data(), count, around);
+  }
+  return nb::ndarray<nb::numpy, uint8_t, nb::ndim<1>>(around, {count}, owner);
+}
+
 }  // namespace
 
 void bind_voxel_map(nb::module_ & module) {
@@ -56,6 +68,7 @@ void bind_voxel_map(nb::module_ & module) {
     .def(
       "point_evidence", &evidence_of_points, nb::arg("points"), nb::arg("pose"),
       nb::arg("outlier_ratio"))
+    .def("columns_around", &columns_around_points, nb::arg("points"), nb::arg("pose"))
     .def_static(
       "attach",
       [](const std::string & shared_path) { return VoxelMap(SharedMemory::attach(shared_path)); },

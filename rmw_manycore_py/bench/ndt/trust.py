@@ -33,6 +33,7 @@ LET_OUT, LET_OUT_AT_START = "wrong poses let out at all", "wrong poses let out a
 REFUSED_AT_START = "right poses refused at a start"
 MISSED = "scans with a guess within 1 m and no right pose"
 MISSED_AT_START = "first scans with a guess within 1 m and no right pose"
+NEVER_FOUND = "first scans with a guess within 1 m whose pose no search finds either"
 SHARES = "share of the drive's median, chosen without the drive"
 FIRST_SHARES = "share of the map's score for a first pose, chosen without the drive"
 EXPLAINED_SHARES = "share of the usual score for an explained score, chosen without the drive"
@@ -46,6 +47,7 @@ SEARCHES = 8  # per drive
 LEFT_BELOW, DRIVE_ROOM, MAP_ROOM, FIRST_ROOM = 0.003, 0.07, 0.1, 0.03
 EXPLAINED_ROOM = 0.02
 AROUND_M, GLOBAL_M = 5.0, 20.0
+FIRST_SEARCHES = ((GLOBAL_M, True), (AROUND_M, False))  # radius, any yaw
 
 
 def measure(run: Run) -> list[Result]:
@@ -86,7 +88,7 @@ def judged(
         return outcome(case, shares[case.drive], helpers)
 
     def refused(case: Case) -> bool:
-        return is_refused(case, shares[case.drive], helpers)
+        return is_missed(case, shares[case.drive], helpers, searches=True)
 
     outcomes = dict(zip(map(id, wrong), helpers.map(outcome_of, wrong), strict=True))
     refuse = dict(zip(map(id, right), helpers.map(refused, right), strict=True))
@@ -127,13 +129,17 @@ def judged(
 
 def _missed(near: Sequence[Case], shares: dict[str, Shares], helpers: Helpers) -> list[Result]:
     """Return how many scans with a near guess get no right pose at once, also by drive."""
-
-    def missed(case: Case) -> bool:
-        return is_missed(case, shares[case.drive], helpers)
-
     starts = [replace(case, before=()) for case in near]
     results = []
-    for question, cases in ((MISSED, near), (MISSED_AT_START, starts)):
+    for question, cases, searches in (
+        (MISSED, near, False),
+        (MISSED_AT_START, starts, False),
+        (NEVER_FOUND, starts, True),
+    ):
+
+        def missed(case: Case, searches: bool = searches) -> bool:
+            return is_missed(case, shares[case.drive], helpers, searches=searches)
+
         is_so = list(helpers.map(missed, cases))
         results.append(_share(question, OURS, is_so))
         for name in shares:
@@ -217,11 +223,11 @@ class Outcome:
 def outcome(case: Case, shares: Shares, helpers: Helpers) -> Outcome:
     """Return what becomes of a wrong pose.
 
-    If the first look is refused, this is about the pose of the second look, which a first pose of
-    a drive does not get. A second look may find the right pose: that is let out, but not wrong.
+    If the first look is refused, this is about the pose of the further ones, of which a first pose
+    of a drive does not get all. They may find the right pose: that is let out, but not wrong.
     """
     verdict = case.judged(shares)
-    if not verdict.is_believed and case.before:
+    if not verdict.is_believed:
         case = helpers.call(looked_again, case, shares)
         verdict = case.judged(shares)
     if not verdict.is_believed:
@@ -230,29 +236,21 @@ def outcome(case: Case, shares: Shares, helpers: Helpers) -> Outcome:
     return Outcome(case.is_wrong, not covers)
 
 
-def is_refused(case: Case, shares: Shares, helpers: Helpers) -> bool:
-    """Return whether a right pose is refused and not found by a second look either.
+def is_missed(case: Case, shares: Shares, helpers: Helpers, *, searches: bool) -> bool:
+    """Return whether a scan gets no right pose.
 
-    At a start it is left to a search.
+    :param searches: a first scan that is refused is searched for.
     """
+    if not case.judged(shares).is_believed:
+        case = helpers.call(looked_again, case, shares)
     if case.judged(shares).is_believed:
-        return False
-    if case.before:
-        again = helpers.call(looked_again, case, shares)
-        return not (again.judged(shares).is_believed and again.is_right)
-    for radius_m, any_yaw in ((AROUND_M, False), (GLOBAL_M, True)):
+        return not case.is_right
+    for radius_m, any_yaw in FIRST_SEARCHES if searches and not case.before else ():
         region = Region(case.guess, radius_m, any_yaw)
         found = helpers.call(searched, case.drive, case.index, region)
         if not found.why_unclear(_level_of(case, shares), region):
             return not _is_there(found, case)
     return True
-
-
-def is_missed(case: Case, shares: Shares, helpers: Helpers) -> bool:
-    """Return whether a scan gets no right pose at once, without a search."""
-    if not case.judged(shares).is_believed:
-        case = helpers.call(looked_again, case, shares)
-    return not (case.judged(shares).is_believed and case.is_right)
 
 
 def _level_of(case: Case, shares: Shares) -> ScoreLevel:
@@ -287,6 +285,7 @@ def _goals() -> tuple[Goal, ...]:
         Goal(REFUSED, OURS, "within", 1.0, statistic="mean"),
         Goal(MISSED, OURS, "within", 1.0, statistic="mean"),
         Goal(MISSED_AT_START, OURS, "within", 1.0, statistic="mean"),
+        Goal(NEVER_FOUND, OURS, "within", 1.0, statistic="mean"),
     )
 
 

@@ -15,7 +15,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rmw_manycore_py.ndt.geometry.arrays import Matrix
+from rmw_manycore_py.native import _ndt
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Pose, ScanPoints
 
 # Minimum explained score of a convincing result, as a share of the map's own score. In the worlds
 # of `manycore bench ndt --only trust` 96 % of the right poses have more. So has one of the wrong
@@ -47,3 +48,13 @@ def explained_score(evidence: Matrix, own_score: float) -> float:
         return 0.0
     contradicting = int((rest & ~fits & ~is_past).sum() + is_past.sum())
     return float(score[rest].mean()) * supporting / (supporting + contradicting)
+
+
+def known_points(voxel_map: _ndt.VoxelMap, scan: ScanPoints, T_map_sensor: Pose) -> ScanPoints:
+    """Return the points of a scan (N, 3) [m, sensor frame] that are not unknown at a pose (4, 4).
+
+    An alignment gains by moving the others to where the map has something: they drag it there.
+    """
+    around = voxel_map.columns_around(scan, T_map_sensor)
+    kept: ScanPoints = np.ascontiguousarray(scan[around >= MIN_COLUMNS_AROUND])
+    return kept

@@ -15,15 +15,15 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.ndt.geometry import poses
-from rmw_manycore_py.ndt.geometry.arrays import (
-    Pose,
-    pose_error,
-    pose_matrix,
-    scan_points,
-)
+from rmw_manycore_py.ndt.geometry.arrays import Pose, pose_error, pose_matrix, scan_points
 from rmw_manycore_py.ndt.matching import covariance
 from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
-from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE, SAMPLE, explained_score
+from rmw_manycore_py.ndt.matching.evidence import (
+    EXPLAINED_SHARE,
+    SAMPLE,
+    explained_score,
+    known_points,
+)
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.level import levelled
 from rmw_manycore_py.ndt.matching.native_matcher import NativeMatcher
@@ -152,7 +152,8 @@ class Matcher:
     ) -> Iterator[Alignment]:
         """Yield alignments to the finest level alone, each computed when it is asked for.
 
-        The first begins without what may be vehicles (vehicles.py), the second at the guess.
+        The first begins without what may be vehicles (vehicles.py), or where the map says nothing
+        (evidence.py), the second at the guess.
         """
         asked = self._asked(points, T_map_guess, T_map_regularization)
         return self._answers(asked, only_pose, self._closely)
@@ -237,9 +238,10 @@ class Matcher:
         return best_of(first, closer, self._convinces)
 
     def _closely(self, asked: Question) -> Iterator[Alignment]:
-        """Align to the finest level from where what cannot be a vehicle leads, then as asked."""
+        """Align to the finest level from where what cannot mislead leads, then as asked."""
         seen = beyond_vehicles(asked.scan, asked.guess)
-        start = self._aligned(replace(asked, scan=seen), is_close=True, polish=False)
+        seen = known_points(self._require_map().finest, seen, asked.guess)
+        start = self._aligned(replace(asked, scan=seen), polish=False)
         if not start.is_degenerate:
             there = replace(asked, guess=start.T_map_sensor)
             yield self._aligned(there, is_close=True).continued_from(start)

@@ -1,6 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Recovery after refused scans: searches around the last good pose first, then farther.
 
+For a first pose it searches with the first scan, globally before it searches around the guess.
+
 ```
  tracking ── N scans refused ─► around: 5 m, 30 degrees ── unclear ─► globally: 20 m, any yaw
     ▲                              │ clear                               │ clear     │ unclear
@@ -26,6 +28,7 @@ from rmw_manycore_py.ndt.trust.region_search import RegionSearch
 from rmw_manycore_py.ndt.trust.search import Region
 
 AROUND_M = 5.0
+AT_ONCE = 2  # searches for a first pose that wait for no further refused scans
 
 
 class Step(Enum):
@@ -87,24 +90,35 @@ class Recovery:
         self.believed()
         self._searched = None
 
-    def refused(self, stamp_s: float, points: ScanPoints, guess: Pose | None, at: Pose) -> None:
+    def refused(
+        self,
+        stamp_s: float,
+        points: ScanPoints,
+        guess: Pose | None,
+        at: Pose,
+        *,
+        is_first: bool = False,
+    ) -> None:
         """Handle a refused scan; start a search when due.
 
         :param at: T_map_base to search around.
+        :param is_first: no scan was believed before: the next may fare no better, and nothing says
+            that the vehicle is near.
         """
         self._refused += 1
-        if not self.is_on or self._refused < self._after_scans or not self._search.is_idle:
+        is_due = self._refused >= self._after_scans or (is_first and self._searches < AT_ONCE)
+        if not self.is_on or not is_due or not self._search.is_idle:
             return
         if self.step is Step.FOUND:
             self._searches = 0
-        self._region = self._next_region(at, guess)
+        self._region = self._next_region(at, guess, is_first)
         self.step = Step.GLOBALLY if self._region.any_yaw else Step.AROUND
         self._searches += 1
         self._refused = 0  # counts towards the next search
         self._searched = _Scan(stamp_s, points, guess)
         self._search.begin(points, self._region)
 
-    def _next_region(self, at: Pose, guess: Pose | None) -> Region:
+    def _next_region(self, at: Pose, guess: Pose | None, is_first: bool) -> Region:
         centres = [at]
         if guess is not None and poses.distance_m(at, guess) > self._radius_m:
             centres.append(guess)
@@ -116,9 +130,11 @@ class Recovery:
                 Region(centre, self._radius_m, any_yaw=True),
             )
         ]
+        wide = regions[1::2]
+        if is_first:
+            regions[:2] = reversed(regions[:2])
         if self._searches < len(regions):
             return regions[self._searches]
-        wide = regions[1::2]
         return wide[self._searches % len(wide)]
 
     def take(self, judge: PoseJudge) -> bool:

@@ -3,7 +3,7 @@
 
 ```
  places of a metre and a degree ─► upright scan, by branch and bound ─► the best dozen
-   ─► whole scan, to all levels ─► places that differ, best first ─► margin over the second
+   ─► closer look at the whole scan ─► places that differ, best first ─► margin over the second
 ```
 """
 
@@ -119,9 +119,10 @@ def search_steps(
         rough = yield from _promising(matcher, sketch, region, make_room)
     fine: list[Alignment] = []
     for start in rough:
-        one = matcher.align_once(scan, start, only_pose=True)
-        if not one.is_degenerate and _is_upright(one.T_map_sensor, start):
-            fine.append(one)
+        closer = matcher.closer_looks(scan, start, only_pose=True)
+        for one in (matcher.align_once(scan, start, only_pose=True), next(closer)):
+            if not one.is_degenerate and _is_upright(one.T_map_sensor, start):
+                fine.append(one)
         yield True
     places = distinct(fine, SAME_M)
     return Found(tuple(matcher.explained(place, scan) for place in places[:1]) + tuple(places[1:]))

@@ -135,8 +135,9 @@ class RobustTracking:
         if verdict.is_believed:
             self._believe(scan, alignment, 0 if found is None else self._along.stood_out)
         else:
-            expected = scan.guess if verdict.expected is None else verdict.expected.poses[0]
-            self._recovery.refused(scan.stamp_s, scan.points, scan.guess, expected)
+            is_first = verdict.expected is None
+            at = scan.guess if verdict.expected is None else verdict.expected.poses[0]
+            self._recovery.refused(scan.stamp_s, scan.points, scan.guess, at, is_first=is_first)
         self._report_recovery(report)
         covariance = verdict.covariance(reliability.output_covariance(alignment, self._p))
         return Tracked(alignment, verdict.is_believed, covariance)

@@ -13,6 +13,7 @@ from rmw_manycore_py.bench.ndt.trust_worlds import Drive, simulated
 from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import scan_points
+from rmw_manycore_py.ndt.matching.evidence import known_points
 from rmw_manycore_py.ndt.trust.judge import PoseJudge
 from support.samples.ndt_world import pose, street
 
@@ -47,6 +48,12 @@ def test_points_are_classified():
     assert is_past == {"behind a wall", "far behind a wall"}
     without_column = {name for name, one in evidence.items() if np.isnan(one[1])}
     assert without_column == {"behind a wall", "beyond a gap", "far behind a wall", "nowhere"}
+    around = voxel_map.finest.columns_around(sensor, at)
+    known = ~np.isnan(found[:, 1])
+    np.testing.assert_array_equal(around, np.where(known, found[:, 2], 0.0))
+    np.testing.assert_array_equal(
+        known_points(voxel_map.finest, sensor, at), sensor[known & (found[:, 2] > 5)]
+    )
     assert evidence["on the ground"][1] == pytest.approx(0.0, abs=0.1)
     assert evidence["in the road"][1] == pytest.approx(1.0, abs=0.1)
     assert evidence["in the road"][2] == 8

@@ -116,13 +116,20 @@ def test_where_vehicles_hide_much_the_finest_level_alone_finds_the_pose(voxel_ma
     assert counted.matcher.closer > 0
 
 
-def test_where_what_no_vehicle_has_misleads_the_guess_itself_leads_home():
+@pytest.mark.parametrize(
+    ("index", "off_m", "looks"),
+    [
+        (61, (1.0, 0.0, 0.0), 1),  # half of the scan is where the map is empty: without that half
+        (41, (0.0, 0.5, 0.0), 2),  # that leads astray, and the guess itself home
+    ],
+)
+def test_where_half_of_the_map_is_missing_the_finest_level_finds_the_pose(index, off_m, looks):
     half = trust_variants.CHANGES["40 % on vehicles, no map on the left"]
-    drive = half(simulated()["street 2"]())
+    drive = half(simulated()["street 1"]())
     counted = Counted(VoxelMap.from_points(drive.map_points, OPTIONS))
-    counted.look(drive, 63, drive.poses[63] @ poses.from_xyz_rpy((0.0, 0.5, 0.0)))
+    counted.look(drive, index, drive.poses[index] @ poses.from_xyz_rpy(off_m))
     assert counted.is_believed
-    assert counted.matcher.closer == 2
+    assert counted.matcher.closer == looks
 
 
 def test_motion_that_refuses_a_good_score_leads_back_to_where_it_leads(counted, drive):

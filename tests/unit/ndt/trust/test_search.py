@@ -96,6 +96,32 @@ def test_farther_off_and_turned_it_is_found_globally(world, recovery):
     assert errors(judge.motion.last.T, TRUTH)[0] < 0.1
 
 
+def test_for_a_first_pose_it_is_searched_with_the_first_scan(world, recovery):
+    points, voxel_map = world
+    judge, scan = judge_of(voxel_map), scan_at(points, TRUTH)
+    at = TRUTH @ pose(8.0, 1.0, 0.0, 0.0, 0.0, 3.0)
+    recovery.refused(1.0, scan, at, at, is_first=True)
+    assert recovery.step is Step.GLOBALLY
+    wait_until(lambda: recovery.take(judge), "the search has found it")
+    assert errors(judge.motion.last.T, TRUTH)[0] < 0.1
+
+
+def test_searches_for_a_first_pose_become_rare(world, recovery):
+    """Where nothing is found, as outside of the map."""
+    points, voxel_map = world
+    judge, at = judge_of(voxel_map), pose(500.0, 0.0, 1.8, 0.0, 0.0, 0.0)
+    steps = []
+    for stamp_s in range(6):
+        recovery.step = Step.TRACKING
+        recovery.refused(float(stamp_s), scan_at(points, TRUTH), at, at, is_first=True)
+        steps.append(recovery.step)
+        if recovery.step is not Step.TRACKING:
+            wait_until(lambda: "fits nowhere" in recovery.note or recovery.take(judge), "its end")
+            recovery.note = ""
+    nothing = Step.TRACKING
+    assert steps == [Step.GLOBALLY, Step.AROUND, nothing, Step.GLOBALLY, nothing, Step.GLOBALLY]
+
+
 def test_where_the_street_repeats_no_place_stands_out(recovery):
     points = street(spacing_m=0.3)
     voxel_map = VoxelMap.from_points(points, OPTIONS)
