@@ -159,6 +159,7 @@ def test_many_matches_are_measured() -> None:
     assert all(row["median"] > 0 for row in rows)
 
 
+@pytest.mark.long
 def test_a_call_concerns_no_other_client() -> None:
     rows = run_bench("scale", "--only", "service with as many clients: manycore")["results"]
     contender = "manycore in 5 clusters (block), 25 clients"

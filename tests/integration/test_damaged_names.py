@@ -10,8 +10,8 @@ from std_msgs.msg import String
 
 from support import IS_MANYCORE
 from support.nodes.ros import announce, peer_node, spin
-from support.peers.programs import forked_manycore
-from support.processes.commands import example_command, manycore_command, peer_command
+from support.peers.programs import forked_example, forked_manycore
+from support.processes.commands import example_command, peer_command
 from support.processes.platforms import PLATFORMS
 from support.processes.program import Program
 
@@ -35,7 +35,7 @@ def rows(start, platform):
     """Return a function that runs a verb and returns the items it lists."""
 
     def call(*words: str) -> list[dict]:
-        program = start(manycore_command(*words, "--platform", platform, "--json"))
+        program = start(forked_manycore(*words, "--platform", platform, "--json"))
         assert program.wait() == 0, program
         return json.loads(program.output)
 
@@ -69,14 +69,14 @@ def test_a_topic_that_does_not_end(talker, rows, platform):
 
 
 def test_a_node_that_is_no_utf_8(talker, rows, start, platform):
-    start(example_command("listener")).wait_for("I heard")
+    start(forked_example("listener")).wait_for("I heard")
     overwrite_name(platform, b"talker", b"\xfe\xfftalker")
     (state,) = rows("status")
     nodes = [node for process in state["processes"] for node in process["nodes"]]
     assert sorted(nodes) == ["/listener", "/\ufffd\ufffdtalker"]
     assert {row["node"] for row in rows("node", "list")} == {"/listener", "/\ufffd\ufffdtalker"}
     for words in (("status",), ("topic", "info", "-v", "/chatter"), ("node", "list")):
-        program = start(manycore_command(*words, "--platform", platform))
+        program = start(forked_manycore(*words, "--platform", platform))
         assert program.wait() == 0, program
         assert "\ufffd\ufffdtalker" in program.output, program
 
@@ -87,7 +87,7 @@ YAML = r"\e]0;evil\a\n[/b]\N\u202e"
 
 
 def test_names_reach_no_terminal_as_control_characters(talker, rows, start, platform):
-    start(example_command("listener")).wait_for("I heard")
+    start(forked_example("listener")).wait_for("I heard")
     overwrite_name(platform, b"talker", CONTROLS.encode())
     overwrite_name(platform, b"/chatter", f"/{CONTROLS}".encode())
     overwrite_name(platform, b"std_msgs/msg/String", f"std_msgs/{CONTROLS}".encode())
@@ -98,7 +98,7 @@ def test_names_reach_no_terminal_as_control_characters(talker, rows, start, plat
     for verb in (*verbs, *named):
         words = (*verb.split(), f"/{CONTROLS}") if verb in named else verb.split()
         option = () if verb == "doctor" else ("--platform", platform)
-        program = start(manycore_command(*words, *option))
+        program = start(forked_manycore(*words, *option))
         program.wait()
         assert program.output, verb
         assert not any(line.startswith("[/b]") for line in program.output.split("\n")), program

@@ -15,6 +15,7 @@ from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapfile import check
 from rmw_manycore_py.platform.status import status
 from support import IS_MANYCORE, wait_until
+from support.peers.programs import forked_manycore
 from support.processes.commands import manycore_command
 
 pytestmark = [
@@ -55,7 +56,7 @@ ENDPOINTS = 2 * (2 + 7 * 2 + 3)
 
 
 def answer(start, *words: str | Path) -> Any:
-    program = start(manycore_command(*words, "--json"))
+    program = start(forked_manycore(*words, "--json"))
     assert program.wait() == 0, program
     return json.loads(program.output[program.output.index(program.output.strip()[0]) :])
 
@@ -104,12 +105,12 @@ def traced(start, mapfile: Path, trace: Path) -> list[dict[str, str]]:
     """Run a mapfile, and return the events after all nodes had talked, as rows of the CSV file."""
     run = start(manycore_command("run", mapfile))
     run.wait_for(HEARD)
-    assert start(manycore_command("trace", "start")).wait() == 0
+    assert start(forked_manycore("trace", "start")).wait() == 0
     for _ in range(MESSAGES):
         run.skip_output()
         run.wait_for(HEARD)
     for words in (("stop",), ("save", "-o", trace)):
-        assert start(manycore_command("trace", *words)).wait() == 0
+        assert start(forked_manycore("trace", *words)).wait() == 0
     assert run.stop() == 0
     lines = [line for line in trace.read_text().splitlines() if not line.startswith("#")]
     return list(csv.DictReader(lines))
@@ -125,10 +126,22 @@ def sends(events: list[dict[str, str]]) -> dict[tuple[str, int, int], set[str]]:
     return found
 
 
-def test_counts_are_those_of_the_raw_events(start, tmp_path, platform) -> None:
-    """Traced in clusters of their own; looked at there, together, and apart in another way."""
-    spread = write_pipeline(tmp_path / "spread.yaml", 1, 2, 3)
-    events = traced(start, spread, tmp_path / "spread.csv")
+def test_traces_are_counted_and_compared(start, tmp_path, platform) -> None:
+    """One of clusters of their own, and one of all nodes together."""
+    events: dict[str, list[dict[str, str]]] = {}
+    for name, clusters in {"spread": (1, 2, 3), "together": (2, 2, 2)}.items():
+        mapfile = write_pipeline(tmp_path / f"{name}.yaml", *clusters)
+        events[name] = traced(start, mapfile, tmp_path / f"{name}.csv")
+        assert len(sends(events[name])) == len(set(clusters)) - 1
+    check_counts(start, tmp_path, events["spread"])
+    check_comparison(start, tmp_path / "spread.csv", tmp_path / "together.csv")
+
+
+def check_counts(start, tmp_path: Path, events: list[dict[str, str]]) -> None:
+    """Look at the traced mapping, at the nodes together, and apart in another way.
+
+    All counts are those of the raw events.
+    """
     writes = [event for event in events if event["kind"] == "write"]
     messages = Counter(event["topic"] for event in writes)
     sizes: Counter[str] = Counter()
@@ -172,13 +185,8 @@ def test_counts_are_those_of_the_raw_events(start, tmp_path, platform) -> None:
         assert len(sent[topic, places[0], places[1]] ^ numbers) <= 2
 
 
-def test_traces_of_two_mappings_are_compared(start, tmp_path, platform) -> None:
-    files = []
-    for name, clusters in {"spread": (1, 2, 3), "together": (2, 2, 2)}.items():
-        files.append(tmp_path / f"{name}.csv")
-        events = traced(start, write_pipeline(tmp_path / "map.yaml", *clusters), files[-1])
-        assert len(sends(events)) == len(set(clusters)) - 1
-    compare = start(manycore_command("trace", "compare", *files))
+def check_comparison(start, *files: Path) -> None:
+    compare = start(forked_manycore("trace", "compare", *files))
     assert compare.wait() == 0
     heading, chain, mapping = compare.output.splitlines()
     assert heading.split() == ["before", "after", "verdict", "chain"]

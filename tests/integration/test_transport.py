@@ -15,6 +15,7 @@ import pytest
 
 import rmw_manycore_py as manycore
 from rmw_manycore_py import transport
+from rmw_manycore_py.native._transport import Configurator
 from rmw_manycore_py.transport.multi_array import TYPES
 from support import TIMEOUT_S, wait_until
 from support.processes.platforms import leftovers
@@ -352,13 +353,19 @@ def test_what_is_no_argument_is_refused(member: transport.Member, act: Act, prob
         act(member)
 
 
-def test_an_array_that_does_not_fit_is_refused(member: transport.Member) -> None:
-    publisher = member.publisher("/huge", np.uint8)
-    size = manycore.status(member.platform).clusters[0].smem_bytes
-    huge = np.broadcast_to(np.zeros(1, np.uint8), (size + 1,))
-    with pytest.raises(transport.TransportError) as found:
-        publisher.publish(huge)
-    assert re.search(rf"{size}|4 GiB|SMEM", str(found.value)), found.value
+def test_an_array_that_does_not_fit_is_refused(platform: str) -> None:
+    shape = {"clusters": 1, "cores_per_cluster": 1, "smem_bytes": 8 << 20}
+    cpus: dict[int, int] = {}
+    with (
+        Configurator(platform, **shape, host_cpu_of_receive_thread=cpus, topics=[]),
+        transport.join(platform, name="tester") as member,
+    ):
+        publisher = member.publisher("/huge", np.uint8)
+        size = manycore.status(platform).clusters[0].smem_bytes
+        huge = np.broadcast_to(np.zeros(1, np.uint8), (size + 1,))
+        with pytest.raises(transport.TransportError) as found:
+            publisher.publish(huge)
+        assert re.search(rf"{size}|SMEM", str(found.value)), found.value
 
 
 def test_status_of_what_was_published(ends: Ends, member: transport.Member) -> None:

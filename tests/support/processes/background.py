@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from rmw_manycore_py.launch.runs.directory import runs_of
+from support.peers.programs import forked_manycore
 from support.processes.commands import manycore_command
 from support.processes.program import Program
 
@@ -18,10 +19,14 @@ from support.processes.program import Program
 def background_runs(
     start: Callable[..., Program], platform: str
 ) -> Iterator[Callable[..., Program]]:
-    """Yield a function that runs `manycore`, checks its status and returns the program."""
+    """Yield a function that runs `manycore`, checks its status and returns the program.
+
+    What goes on in the background is started as users start it.
+    """
 
     def call(*words: str | Path, status: int = 0) -> Program:
-        program = start(manycore_command(*words))
+        command = manycore_command if words[0] == "up" else forked_manycore
+        program = start(command(*words))
         assert program.wait() == status, program
         return program
 
