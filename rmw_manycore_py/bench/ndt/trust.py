@@ -14,7 +14,14 @@ from functools import partial
 import numpy as np
 
 from rmw_manycore_py.bench.ndt.contenders import usable
-from rmw_manycore_py.bench.ndt.trust_cases import Case, Shares, cases_of, looked_again, searched
+from rmw_manycore_py.bench.ndt.trust_cases import (
+    Case,
+    Shares,
+    cases_of,
+    looked_again,
+    moved,
+    searched,
+)
 from rmw_manycore_py.bench.ndt.trust_helpers import Helpers, TrustHelpers
 from rmw_manycore_py.bench.ndt.trust_variants import drives
 from rmw_manycore_py.bench.question import Question, Run
@@ -40,13 +47,14 @@ EXPLAINED_SHARES = "share of the usual score for an explained score, chosen with
 OURS, AUTOWARE = "rmw_manycore", "as Autoware"
 AUTOWARE_SCORE = 2.3  # converged_param_nearest_voxel_transformation_likelihood
 SEARCHED, FOUND_WRONG = "right places found by a search", "wrong places found by a search"
+FOUND_WRONG_OUTSIDE = "wrong places found by a search that does not reach the scan's"
 SEARCHES = 8  # per drive
 # The chosen shares leave 0.3 % of the right poses of the other drives below, plus a margin for a
 # different drive: scores of a sparse map vary more along the way. A first pose must fit better than
 # all wrong ones of the other drives, plus a margin.
 LEFT_BELOW, DRIVE_ROOM, MAP_ROOM, FIRST_ROOM = 0.003, 0.07, 0.1, 0.03
 EXPLAINED_ROOM = 0.02
-AROUND_M, GLOBAL_M = 5.0, 20.0
+AROUND_M, GLOBAL_M, OUTSIDE_M = 5.0, 20.0, 30.0
 FIRST_SEARCHES = ((GLOBAL_M, True), (AROUND_M, False))  # radius, any yaw
 
 
@@ -160,19 +168,31 @@ def _searches(
     picked = []
     for name in shares:
         picked += [c for c in wrong if c.drive == name and _is_in_reach(c)][:searches]
-    answers = list(helpers.map(partial(_found_by_search, shares, helpers), picked))
-    if not answers:
+    if not picked:
         return []
+    outside = [
+        replace(case, guess=moved(case.truth, OUTSIDE_M, heading))
+        for index, case in enumerate(picked)
+        for heading in [np.arctan2(case.truth[1, 0], case.truth[0, 0]) + np.pi * (index % 2)]
+        if not case.repeats
+    ]
+    found = partial(_found_by_search, shares, helpers)
+    answers = list(helpers.map(found, picked))
     is_wrong = [clear and not there for clear, there in answers]
     is_right = [clear and there for clear, there in answers]
-    return [_share(SEARCHED, OURS, is_right), _share(FOUND_WRONG, OURS, is_wrong)]
+    is_wrong_outside = [clear and not there for clear, there in helpers.map(found, outside)]
+    return [
+        _share(SEARCHED, OURS, is_right),
+        _share(FOUND_WRONG, OURS, is_wrong),
+        _share(FOUND_WRONG_OUTSIDE, OURS, is_wrong_outside),
+    ]
 
 
 def _found_by_search(shares: dict[str, Shares], helpers: Helpers, case: Case) -> tuple[bool, bool]:
     """Return whether a global search finds a unique place, and whether it is the right one."""
     region = Region(case.guess, GLOBAL_M, any_yaw=True)
     found = helpers.call(searched, case.drive, case.index, region)
-    is_clear = not found.why_unclear(_level_of(case, shares[case.drive]), region)
+    is_clear = not found.why_unclear(_level_of(case, shares[case.drive]))
     return is_clear, is_clear and _is_there(found, case)
 
 
@@ -248,7 +268,7 @@ def is_missed(case: Case, shares: Shares, helpers: Helpers, *, searches: bool) -
     for radius_m, any_yaw in FIRST_SEARCHES if searches and not case.before else ():
         region = Region(case.guess, radius_m, any_yaw)
         found = helpers.call(searched, case.drive, case.index, region)
-        if not found.why_unclear(_level_of(case, shares), region):
+        if not found.why_unclear(_level_of(case, shares)):
             return not _is_there(found, case)
     return True
 

@@ -254,12 +254,13 @@ def _guesses(truth: Pose, rounds: int, generator: np.random.Generator) -> Iterat
             distance_m, angle_deg = FAR[(2 * turn + kind) % len(FAR)]
             direction = generator.uniform(-np.pi, np.pi)
             turned = np.radians(generator.uniform(0.3, 1.0) * angle_deg)
-            yield _moved(truth, distance_m, direction, turned * generator.choice([-1.0, 1.0]))
+            yield moved(truth, distance_m, direction, turned * generator.choice([-1.0, 1.0]))
         along = float(np.arctan2(truth[1, 0], truth[0, 0])) + generator.choice([0.0, np.pi])
-        yield _moved(truth, ALONG_M[turn % len(ALONG_M)], along, 0.0)
+        yield moved(truth, ALONG_M[turn % len(ALONG_M)], along)
 
 
-def _moved(truth: Pose, distance_m: float, direction_rad: float, yaw_rad: float) -> Pose:
+def moved(truth: Pose, distance_m: float, direction_rad: float, yaw_rad: float = 0.0) -> Pose:
+    """Return a pose moved in a direction of the map, and turned."""
     T: Matrix = truth.copy()
     T[:2, 3] += distance_m * np.array([np.cos(direction_rad), np.sin(direction_rad)])
     T[:3, :3] = poses.from_rotation_vector((0.0, 0.0, yaw_rad)) @ T[:3, :3]

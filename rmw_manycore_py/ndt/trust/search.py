@@ -27,7 +27,6 @@ from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
 FOLLOWED = 16  # places that are aligned with the whole scan
 AROUND_YAW_RAD = np.radians(45.0)  # of a region without any_yaw
 TILT_RAD = np.radians(15.0)  # of a result, against the gravity that is known
-BETWEEN_M = 60.0  # radius of a region of any yaw that is neither small nor large
 SAME_M, SAME_RAD = 1.0, np.radians(10.0)  # closer results count as one place
 MARGIN = 0.05  # minimum lead of the best place, relative to its fit
 
@@ -68,23 +67,18 @@ class Found:
         best, second = (place.fit for place in self.places[:2])
         return (best - second) / best if best > 0.0 else 0.0
 
-    def why_unclear(self, level: ScoreLevel, region: Region) -> str:
+    def why_unclear(self, level: ScoreLevel) -> str:
         """Return why the best place is not accepted; "" if it is.
 
-        In a small region the right place may be missing and a wrong one be the best, and a large
-        one has many wrong places: the best must fit as well as a first pose. In between the map's
-        required score suffices.
+        The right place may be outside of the region, and a wrong one the best: so the best must fit
+        as well as a first pose.
         """
         if not self.places:
             return "the scan fits nowhere"
         best = self.places[0]
-        if not best.explained_score > level.of_explained:
-            is_between = region.any_yaw and region.radius_m <= BETWEEN_M
-            if not is_between and not best.fit > level.of_first:
-                return f"the best fit {best.fit:.3f} is below {level.of_first:.3f}"
-            score = best.nearest_voxel_likelihood
-            if not score > level.of_map:
-                return f"the best score {score:.3f} is below {level.of_map:.3f}"
+        explained = best.explained_score
+        if not (explained > level.of_explained or best.fit > level.of_first):
+            return f"the best explained score {explained:.3f} is below {level.of_explained:.3f}"
         if self.margin < MARGIN:
             other = self.places[1]
             apart_m = poses.distance_m(best.T_map_sensor, other.T_map_sensor)

@@ -19,7 +19,7 @@ from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import scan_points
 from rmw_manycore_py.ndt.trust.judge import PoseJudge
 from rmw_manycore_py.ndt.trust.recovery import Recovery, Step
-from rmw_manycore_py.ndt.trust.search import Found, Region, search, search_steps
+from rmw_manycore_py.ndt.trust.search import MARGIN, Found, Region, search, search_steps
 from support import wait_until
 from support.samples.ndt_world import errors, pose, scan_at, street
 
@@ -153,7 +153,16 @@ def lost_in(matcher: SerialMatcher, scan: np.ndarray) -> tuple[Found, str]:
     """Search the whole map; return also why the best place is not accepted."""
     region = Region(np.eye(4), np.inf, any_yaw=True)
     found = search(matcher, scan_points(scan), region)
-    return found, found.why_unclear(judge_of(matcher.map).level, region)
+    return found, found.why_unclear(judge_of(matcher.map).level)
+
+
+@pytest.mark.parametrize(("index", "ahead_m"), [(3, 30.0), (5, -30.0), (61, 30.0)])
+def test_a_search_that_does_not_reach_the_scan_finds_nothing(drives, matcher, index, ahead_m):
+    """One place stands out from the others there, and is wrong."""
+    centre = drives[0].poses[index] @ pose(ahead_m, 0.0, 0.0, 0.0, 0.0, 0.0)
+    found = search(matcher, scan_points(drives[0].scan(index)), Region(centre, 20.0, any_yaw=True))
+    assert found.margin > MARGIN
+    assert "explained score" in found.why_unclear(judge_of(matcher.map).level)
 
 
 def test_a_scan_is_found_without_a_guess(drives, matcher):
