@@ -18,6 +18,7 @@ from support.nodes.bridging import Bridge
 from support.peers.programs import forked_example, forked_manycore
 from support.processes.commands import manycore_command
 from support.processes.platforms import leftovers, unique_platform
+from support.session.sharing import made_once
 
 
 @pytest.fixture(scope="session")
@@ -96,15 +97,17 @@ def browser(chromium):
 @pytest.fixture(scope="module")
 def street(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a directory with a drive of ten scans and its map."""
+    return made_once(tmp_path_factory, "street", simulate)
+
+
+def simulate(directory: Path) -> None:
     from click.testing import CliRunner
 
     from rmw_manycore_py.cli.main import cli
 
-    directory = tmp_path_factory.mktemp("street")
     arguments = ["ndt", "simulate", str(directory), "--length", "8"]
     result = CliRunner().invoke(cli, arguments)
     assert result.exit_code == 0, result.output
-    return directory
 
 
 @pytest.fixture

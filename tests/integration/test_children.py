@@ -17,6 +17,7 @@ from rmw_manycore_hook import library_path
 from support import IS_MANYCORE, TESTS, TIMEOUT_S
 from support.processes.commands import manycore_command
 from support.processes.platforms import environment
+from support.session.sharing import made_once
 
 if not IS_MANYCORE:
     pytest.skip("is about rmw_manycore in the place of Fast DDS", allow_module_level=True)
@@ -93,10 +94,12 @@ def shown(output: str) -> Shown:
 @pytest.fixture(scope="module")
 def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the directory of C++ programs that are linked like the libraries of the wheels."""
-    directory = tmp_path_factory.mktemp("programs")
+    return made_once(tmp_path_factory, "programs", compile_programs)
+
+
+def compile_programs(directory: Path) -> None:
     for name, libraries in LIBRARIES.items():
         compile_program(name, directory / name, *libraries)
-    return directory
 
 
 def compile_program(name: str, output: Path, *libraries: str) -> None:

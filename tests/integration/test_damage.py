@@ -22,6 +22,7 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="damages the files of rmw_manycore"),
 ]
 
+OFTEN = ("--ros-args", "-p", "rate_hz:=20.0")
 RANDOM = random.Random(7)
 SEEDS = range(1, 7)
 HEADER_BYTES = 64  # header of every segment: magic, layout version, size
@@ -45,7 +46,7 @@ DAMAGES: dict[str, Damage] = {
 @pytest.fixture
 def running(start, platform) -> Iterator[Path]:
     """Yield the directory of a platform on which a talker runs in cluster 1."""
-    start(forked_example("talker")).wait_for("Publishing")
+    start(forked_example("talker", *OFTEN)).wait_for("Publishing")
     yield PLATFORMS / platform
     kill_all(platform)
     shutil.rmtree(PLATFORMS / platform, ignore_errors=True)
@@ -117,7 +118,7 @@ def test_segment_of_another_version(start, directory):
 def test_segment_of_another_platform(start, directory):
     """The registry is complete and valid, but belongs to another platform."""
     other = f"{directory.name}-other"
-    talker = start(forked_example("talker"), MANYCORE_PLATFORM=other)
+    talker = start(forked_example("talker", *OFTEN), MANYCORE_PLATFORM=other)
     talker.wait_for("Publishing")
     shutil.copy(PLATFORMS / other / "registry", directory / "copy")
     (directory / "copy").rename(directory / "registry")
@@ -154,11 +155,11 @@ def test_garbage_in_a_pipe(start, running):
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_leftovers_of_a_dead_platform(start, platform, damage):
     """The next start removes whatever a dead platform left."""
-    talker = start(forked_example("talker"))
+    talker = start(forked_example("talker", *OFTEN))
     talker.wait_for("Publishing")
     kill_all(platform)
     for name in ("registry", "cluster-1"):
         damage_file(PLATFORMS / platform / name, DAMAGES[damage])
-    again = start(forked_example("talker"))
+    again = start(forked_example("talker", *OFTEN))
     again.wait_for("Publishing")
     assert again.stop_node(), again

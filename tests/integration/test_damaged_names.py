@@ -25,7 +25,7 @@ NAME_BYTES = 256  # a field in the registry: the name, padded with zeros
 
 @pytest.fixture
 def talker(start) -> Program:
-    program = start(example_command("talker"))
+    program = start(example_command("talker", "--ros-args", "-p", "rate_hz:=20.0"))
     program.wait_for("Publishing")
     return program
 
