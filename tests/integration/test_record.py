@@ -21,6 +21,7 @@ from support import IS_MANYCORE, wait_until
 from support.nodes.bridging import OUTSIDE
 from support.nodes.ros import announce, peer_node, spin_until, type_of
 from support.nodes.speakers import hear, qos, say
+from support.peers.programs import forked_manycore
 from support.processes.commands import manycore_command, peer_command
 from support.processes.platforms import leftovers
 from support.samples.recordings import text_in, write_texts
@@ -95,7 +96,7 @@ def test_a_player_offers_what_was_recorded(start, tmp_path, place) -> None:
     speaker.kill()
     # The second message is much later, so the player still runs.
     play = ["topic", "play", bag, "--remap", "/map:=/old_map", "--rate", "0.01", "--loop"]
-    start(manycore_command(*play, "--delay", "0.01", *options(place)))
+    start(forked_manycore(*play, "--delay", "0.01", *options(place)))
     hearer = start(peer_command(hear, "/old_map", LATCHED), **place)
     hearer.wait_for("^heard first")
 
@@ -116,14 +117,14 @@ def test_a_killed_recorder_leaves_what_can_be_read_and_played(start, tmp_path) -
             for _, _, message in NonSeekingReader(stream).iter_messages(log_time_order=False):
                 others.append(text_in(message.data))
     assert others == texts
-    info = start(manycore_command("bag", "info", bag))
+    info = start(forked_manycore("bag", "info", bag))
     assert info.wait() == 0
     assert f"Messages:          {len(texts)}" in info.lines
     assert "it was not finished" in info.output
     hearer = start(peer_command(hear, "/again", {"depth": 1000}))
     hearer.wait_for("listening")
     play = ["topic", "play", bag, "--rate", "100", "--remap", "/news:=/again", "--json"]
-    player = start(manycore_command(*play))
+    player = start(forked_manycore(*play))
     assert player.wait() == 0
     assert json.loads(player.lines[-1])["messages"] == len(texts)
     assert [hearer.wait_for("^heard (again .*) ").group(1) for _ in texts] == texts
@@ -159,7 +160,7 @@ def test_a_player_keeps_order_and_rate_and_publishes_the_clock(start, tmp_path) 
     hearer = start(peer_command(hear, "/a", {}))
     hearer.wait_for("listening")
     words = ["--rate", "20", "--start-offset", "40", "--duration", "60", "--clock", "100"]
-    player = start(manycore_command("topic", "play", bag, *words))
+    player = start(forked_manycore("topic", "play", bag, *words))
     assert player.wait() == 0
     assert player.lines[-1].startswith("played 4 messages; late by")
     for number in range(2, 6):

@@ -17,6 +17,7 @@ from support import IS_MANYCORE, TIMEOUT_S, wait_until
 from support.installs.building import write_definitions
 from support.nodes.ros import peer_node, spin_until, type_of
 from support.nodes.speakers import hear, say
+from support.peers.programs import forked_manycore
 from support.processes.commands import manycore_command, peer_command
 from support.processes.own_shm import can_mount
 from support.processes.person import Person
@@ -97,7 +98,7 @@ def test_a_recording_goes_on_without_its_output(start, tmp_path, where) -> None:
 def test_a_recording_may_last_long(start, tmp_path) -> None:
     start(peer_command(say, "/news", {}, 0.02)).wait_for("said")
     words = ("/news", "-o", tmp_path / "bag", "--duration", "720h", "--json")
-    recorder = start(manycore_command("topic", "record", *words))
+    recorder = start(forked_manycore("topic", "record", *words))
     file = tmp_path / "bag" / "bag_0.mcap"
     wait_until(lambda: file.exists() and file.stat().st_size > 2048, "some is on the disk")
     assert recorder.stop() == 0, recorder
@@ -127,7 +128,7 @@ def test_what_is_there_is_not_overwritten(start, tmp_path) -> None:
         (tmp_path / "nix" / "b.mcap", "No such file or directory"),
         (tmp_path / "nix" / "b", "No such file or directory"),
     ):
-        recorder = start(manycore_command("topic", "record", "/a", "-o", path))
+        recorder = start(forked_manycore("topic", "record", "/a", "-o", path))
         assert recorder.wait() == EXIT_BAD_INPUT
         assert complaint in recorder.output, recorder
     with Recording(bag) as recording:
@@ -135,7 +136,7 @@ def test_what_is_there_is_not_overwritten(start, tmp_path) -> None:
 
 
 def test_record_refuses_an_empty_selection(start, tmp_path) -> None:
-    recorder = start(manycore_command("topic", "record", "-o", tmp_path / "a.mcap"))
+    recorder = start(forked_manycore("topic", "record", "-o", tmp_path / "a.mcap"))
     assert recorder.wait() == EXIT_BAD_INPUT
     assert "no topics given" in recorder.output
     assert not (tmp_path / "a.mcap").exists()
@@ -148,21 +149,21 @@ def test_a_type_without_definition_is_recorded_and_played_inside(
     bag = tmp_path / "a.mcap"
     with Process(platform, label="strange") as process:
         publisher = process.publisher("/strange", "nix_msgs/msg/Nix", Qos(), type_hash=NIX_HASH)
-        recorder = start(manycore_command("topic", "record", "/strange", "-o", bag))
+        recorder = start(forked_manycore("topic", "record", "/strange", "-o", bag))
         recorder.wait_for("type nix_msgs/msg/Nix is not installed.*manycore interface build")
         wait_until(publisher.matched, "the recorder listens")
         publisher.publish(b"\0\1\0\0abcd")
         wait_until(lambda: bag.stat().st_size > 300, "it is on the disk")
         recorder.stop()
         del publisher
-    player = start(manycore_command("topic", "play", bag))
+    player = start(forked_manycore("topic", "play", bag))
     assert player.wait() == 0, player
-    outside = start(manycore_command("topic", "play", bag, "--outside"))
+    outside = start(forked_manycore("topic", "play", bag, "--outside"))
     assert outside.wait() == 1
     assert "nix_msgs" in outside.output
     sources = write_definitions(tmp_path / "sources", NIX)
     run_quoted(outside.output, "manycore interface build", PATH=sources)
-    again = start(manycore_command("topic", "play", bag, "--outside"))
+    again = start(forked_manycore("topic", "play", bag, "--outside"))
     assert again.wait() == 0, again
 
 
@@ -171,7 +172,7 @@ def test_a_topic_with_two_types_is_left_out(start, platform, tmp_path) -> None:
         publishers = [
             process.publisher("/a", f"std_msgs/msg/{name}", Qos()) for name in ("String", "Int8")
         ]
-        recorder = start(manycore_command("topic", "record", "--all", "-o", tmp_path / "a.mcap"))
+        recorder = start(forked_manycore("topic", "record", "--all", "-o", tmp_path / "a.mcap"))
         recorder.wait_for(
             "not recorded: /a has several types, std_msgs/msg/Int8 and std_msgs/msg/String"
         )
@@ -188,7 +189,7 @@ def test_a_player_does_not_play_to_another_type(start, platform, tmp_path, kind)
     type_name = "std_msgs/msg/Int8" if kind == "type" else "std_msgs/msg/String"
     with Process(platform, label="strange") as process:
         subscription = process.subscription("/a", type_name, Qos(), type_hash="RIHS01_" + 64 * "2")
-        player = start(manycore_command("topic", "play", bag))
+        player = start(forked_manycore("topic", "play", bag))
         assert player.wait() == 1
         assert "another definition" in player.output or "std_msgs/msg/Int8 here" in player.output
         assert "--exclude-topics /a" in player.output
@@ -200,7 +201,7 @@ def test_play_reports_a_gap_and_goes_on(start, tmp_path) -> None:
     bag = write_texts(tmp_path / "a.mcap", [("/a", 0, "x"), ("/a", end_s, "y")])
     hearer = start(peer_command(hear, "/a", {}))
     hearer.wait_for("listening")
-    player = start(manycore_command("topic", "play", bag))
+    player = start(forked_manycore("topic", "play", bag))
     player.wait_for("no message for 530.7 years after 0.000 s: playing waits as long; --duration 0")
     hearer.wait_for("^heard x ")
     assert player.stop() == 0, player
@@ -220,6 +221,6 @@ def test_play_rejects_invalid_options(start, tmp_path) -> None:
         (["--start-offset", "1e300"], "found 1e300"),
         (["--duration", "inf"], "found inf"),
     ):
-        player = start(manycore_command("topic", "play", bag, *words))
+        player = start(forked_manycore("topic", "play", bag, *words))
         assert player.wait() == EXIT_BAD_INPUT, player
         assert complaint in player.output, player

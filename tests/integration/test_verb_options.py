@@ -96,7 +96,7 @@ def test_echo_with_the_options_of_ros2(running, start, manycore) -> None:
         assert manycore(*once, "/chatter", "--field", "data", *style) == "it is: 'x'\n---"
     assert manycore(*once, "/array", "--field", "data") == "array('d', [1.0, 2.5])\n---"
     liveliness = ("--qos-liveliness", "manual_by_topic")
-    never = start(manycore_command("topic", "echo", "/chatter", *liveliness))
+    never = start(forked_manycore("topic", "echo", "/chatter", *liveliness))
     never.wait_for("incompatible policy: LIVELINESS")
     assert never.stop() == 0
     refused = manycore(*once, "/chatter", "--qos-profile", "fast", status=2)
@@ -104,11 +104,11 @@ def test_echo_with_the_options_of_ros2(running, start, manycore) -> None:
 
 
 def test_meters_wait_for_a_topic(start, manycore) -> None:
-    hz = start(manycore_command("topic", "hz", "/chatter"))
+    hz = start(forked_manycore("topic", "hz", "/chatter"))
     hz.wait_for(r"^WARNING: topic \[/chatter\] does not appear to be published yet$")
-    bw = start(manycore_command("topic", "bw", "/chatter"))
+    bw = start(forked_manycore("topic", "bw", "/chatter"))
     bw.wait_for("WARNING")
-    echo = start(manycore_command("topic", "echo", "/chatter", "std_msgs/msg/String"))
+    echo = start(forked_manycore("topic", "echo", "/chatter", "std_msgs/msg/String"))
     echo.wait_for(r"^WARNING: topic \[/chatter\] does not appear to be published yet$")
     start(peer_command(a_bit_of_everything)).wait_for("ready")
     hz.wait_for(r"^average rate: \d+\.\d{3}$")
@@ -119,10 +119,10 @@ def test_meters_wait_for_a_topic(start, manycore) -> None:
 
 def test_simulated_time_is_that_of_the_clock(start) -> None:
     clock = ("topic", "pub", "-r", "50", "--print", "0", "/clock", "rosgraph_msgs/msg/Clock")
-    start(manycore_command(*clock, "{clock: {sec: 5}}")).wait_for("beginning")
+    start(forked_manycore(*clock, "{clock: {sec: 5}}")).wait_for("beginning")
     stamped = ("/stamped", "std_msgs/msg/Header")
-    pub = start(manycore_command("topic", "pub", "-s", *stamped, "{stamp: now}"))
-    echo = start(manycore_command("topic", "echo", *stamped, "--field", "stamp.sec"))
+    pub = start(forked_manycore("topic", "pub", "-s", *stamped, "{stamp: now}"))
+    echo = start(forked_manycore("topic", "echo", *stamped, "--field", "stamp.sec"))
     pub.wait_for(r"stamp=builtin_interfaces.msg.Time\(sec=0, nanosec=0\)")  # no /clock message yet
     echo.wait_for("^5$")
     assert echo.stop() == 0
@@ -130,7 +130,7 @@ def test_simulated_time_is_that_of_the_clock(start) -> None:
 
 
 def test_values_from_standard_input_and_files(start, manycore, tmp_path) -> None:
-    heard = start(manycore_command("topic", "echo", "/talk", "std_msgs/msg/String"))
+    heard = start(forked_manycore("topic", "echo", "/talk", "std_msgs/msg/String"))
     pub = ("topic", "pub", "--once", "--stdin", "/talk", "std_msgs/msg/String")
     # Without the middleware in its environment it restarts itself, and must not lose its input.
     alone = start(manycore_command(*pub), RMW_IMPLEMENTATION="")
@@ -160,10 +160,10 @@ def test_values_from_standard_input_and_files(start, manycore, tmp_path) -> None
 
 
 def test_calls_of_a_service_are_shown(running, start, manycore) -> None:
-    echo = start(manycore_command("service", "echo", "/switch", "--flow-style"))
-    csv = start(manycore_command("service", "echo", "/switch", "std_srvs/srv/SetBool", "--csv"))
-    lines = start(manycore_command("service", "echo", "/switch", "--json"))
-    called = start(manycore_command("service", "call", "-r", "20", "--stdin", *SWITCH))
+    echo = start(forked_manycore("service", "echo", "/switch", "--flow-style"))
+    csv = start(forked_manycore("service", "echo", "/switch", "std_srvs/srv/SetBool", "--csv"))
+    lines = start(forked_manycore("service", "echo", "/switch", "--json"))
+    called = start(forked_manycore("service", "call", "-r", "20", "--stdin", *SWITCH))
     called.say("data: true")
     called.close_input()
     echo.wait_for("^  event_type: REQUEST_RECEIVED$")
@@ -177,7 +177,7 @@ def test_calls_of_a_service_are_shown(running, start, manycore) -> None:
     assert event["response"] == [{"success": True, "message": "on"}]
     assert called.stop() == 0
     assert [program.stop() for program in (echo, csv, lines)] == [0, 0, 0]
-    silent = start(manycore_command("service", "echo", "/filter/get_parameters"))
+    silent = start(forked_manycore("service", "echo", "/filter/get_parameters"))
     silent.wait_for("No publishers on topic '/filter/get_parameters/_service_event'; is service")
     silent.stop()
     unknown = manycore("service", "info", "/switchh", status=1)
@@ -221,7 +221,7 @@ def test_parameters_are_loaded_with_and_without_wildcards(running, manycore, tmp
 
 
 def test_a_parameter_of_a_node_that_is_starting(start) -> None:
-    get = start(manycore_command("param", "get", "/filter", "name", "--timeout", "-1"))
+    get = start(forked_manycore("param", "get", "/filter", "name", "--timeout", "-1"))
     start(peer_command(a_bit_of_everything))
     assert get.wait() == 0, get
     assert get.output == "String value is: left"

@@ -15,7 +15,8 @@ import yaml
 from rmw_manycore_py.ros.parameter_files import read_file
 from support import IS_MANYCORE
 from support.nodes.ros import announce, peer_node
-from support.processes.commands import example_command, manycore_command, peer_command
+from support.peers.programs import forked_manycore
+from support.processes.commands import example_command, peer_command
 from support.processes.program import Program
 
 pytestmark = [
@@ -177,7 +178,7 @@ def test_json_has_no_bytes_and_no_infinity(start, manycore) -> None:
     dumped = strict(manycore("param", "dump", "--json", "/typed"))["/typed"]["ros__parameters"]
     assert (dumped["data"], dumped["numbers"][2]) == ([0, 255], "inf")
     level = ("/level", "std_msgs/msg/Float64")
-    start(manycore_command("topic", "pub", "-r", "50", *level, "data: .nan")).wait_for("#1")
+    start(forked_manycore("topic", "pub", "-r", "50", *level, "data: .nan")).wait_for("#1")
     assert strict(manycore("topic", "echo", "--once", "--json", *level)) == {"data": "nan"}
 
 
@@ -212,7 +213,7 @@ def fibonacci_by_steps() -> None:
 def test_actions_get_goals(start) -> None:
     server = start(peer_command(fibonacci_by_steps), 2)
     goal = ("/fibonacci", "test_msgs/action/Fibonacci")
-    sender = start(manycore_command("action", "send_goal", "-f", *goal, "{order: 3}"))
+    sender = start(forked_manycore("action", "send_goal", "-f", *goal, "{order: 3}"))
     sender.wait_for("^Goal accepted")
     for _ in range(2):  # rclpy drops feedback once the result has arrived
         server.say("step")
@@ -244,7 +245,7 @@ def test_actions_are_listed(start, manycore) -> None:
 def test_an_interrupt_cancels_a_goal(start) -> None:
     start(example_command("fibonacci_server", *SLOW), 2)
     goal = ("/fibonacci", "test_msgs/action/Fibonacci", "{order: 3}")
-    sender = start(manycore_command("action", "send_goal", *goal))
+    sender = start(forked_manycore("action", "send_goal", *goal))
     sender.wait_for("Goal accepted")
     sender.signal(signal.SIGINT)
     sender.wait_for("Goal canceled.")
@@ -277,7 +278,7 @@ def test_lifecycles_are_seen_and_changed(start, manycore) -> None:
 
 
 def test_messages_are_published_as_ros2_does(start, manycore) -> None:
-    echo = start(manycore_command("topic", "echo", "/chatter", "std_msgs/msg/String"))
+    echo = start(forked_manycore("topic", "echo", "/chatter", "std_msgs/msg/String"))
     pub = ("topic", "pub", "-t", "2", "-r", "50", "/chatter", "std_msgs/msg/String")
     lines = manycore(*pub, "data: hello").splitlines()
     assert lines[-4:] == [
@@ -316,12 +317,12 @@ def publish_bursts() -> None:
 def test_echo_reports_lost_messages(start) -> None:
     start(peer_command(publish_bursts)).wait_for("ready")
     echo = ("topic", "echo", "/bursts", "--qos-depth", "2")
-    told = start(manycore_command(*echo))
+    told = start(forked_manycore(*echo))
     told.wait_for("^A message was lost!!!$")
     told.wait_for(r"^\ttotal count change:\d+$")
     told.wait_for(r"^\ttotal count: \d+---$")
     assert told.stop() == 0
-    silent = start(manycore_command(*echo, "--no-lost-messages"))
+    silent = start(forked_manycore(*echo, "--no-lost-messages"))
     for _ in range(3):  # of a hundred at once
         silent.wait_for("^data: ")
     assert silent.stop() == 0
@@ -332,7 +333,7 @@ def test_echo_reports_lost_messages(start) -> None:
 def posing(start) -> Iterator[Program]:
     """Publish poses with stamps; afterwards check that Ctrl-C ends it well."""
     pose = ("/pose", "geometry_msgs/msg/PoseStamped")
-    pub = start(manycore_command("topic", "pub", "-r", "50", *pose, "{header: auto}"))
+    pub = start(forked_manycore("topic", "pub", "-r", "50", *pose, "{header: auto}"))
     pub.wait_for("publishing #1")
     yield pub
     assert pub.stop() == 0
@@ -340,7 +341,7 @@ def posing(start) -> Iterator[Program]:
 
 @pytest.mark.usefixtures("posing")
 def test_bandwidth_and_delay_of_a_topic(start, manycore) -> None:
-    watchers = [start(manycore_command("topic", verb, "/pose")) for verb in ("bw", "delay")]
+    watchers = [start(forked_manycore("topic", verb, "/pose")) for verb in ("bw", "delay")]
     watchers[0].wait_for(r"^(\d+\.\d\d K|\d+ )B/s from \d+ messages$")
     watchers[0].wait_for(r"^\tMessage size mean: 0\.08 KB min: 0\.08 KB max: 0\.08 KB$")
     watchers[1].wait_for(r"^average delay: \d+\.\d{3}$")
@@ -351,7 +352,7 @@ def test_bandwidth_and_delay_of_a_topic(start, manycore) -> None:
 
 
 def test_load_of_topics_and_processes(start, manycore, posing) -> None:
-    top = start(manycore_command("top", "--json"))
+    top = start(forked_manycore("top", "--json"))
     moved = r'^\{.*"topic": "/pose", "messages_per_s": (?!0\.0,).*'
     load = json.loads(top.wait_for(moved).group())
     assert top.stop() == 0
