@@ -29,6 +29,7 @@ AROUND_YAW_RAD = np.radians(45.0)  # of a region without any_yaw
 TILT_RAD = np.radians(15.0)  # of a result, against the gravity that is known
 SAME_M, SAME_RAD = 1.0, np.radians(10.0)  # closer results count as one place
 MARGIN = 0.05  # minimum lead of the best place, relative to its fit
+ONLY_SHARE = 0.95  # of the fit of a first pose: that of the only place which fits
 
 # A place also stands out if its lead is large compared with the differences of the others.
 MIN_LEAD, LEAD_DEVIATIONS, MIN_PLACES = 0.01, 2.5, 5
@@ -71,13 +72,13 @@ class Found:
         """Return why the best place is not accepted; "" if it is.
 
         The right place may be outside of the region, and a wrong one the best: so the best must fit
-        as well as a first pose.
+        nearly as well as a first pose, of which nothing says that it is the only one.
         """
         if not self.places:
             return "the scan fits nowhere"
         best = self.places[0]
         explained = best.explained_score
-        if not (explained > level.of_explained or best.fit > level.of_first):
+        if not (explained > level.of_explained or best.fit > ONLY_SHARE * level.of_first):
             return f"the best explained score {explained:.3f} is below {level.of_explained:.3f}"
         if self.margin < MARGIN:
             other = self.places[1]
