@@ -192,7 +192,7 @@ def _found_by_search(shares: dict[str, Shares], helpers: Helpers, case: Case) ->
     """Return whether a global search finds a unique place, and whether it is the right one."""
     region = Region(case.guess, GLOBAL_M, any_yaw=True)
     found = helpers.call(searched, case.drive, case.index, region)
-    is_clear = not found.why_unclear(_level_of(case, shares[case.drive]))
+    is_clear = not found.why_unclear(_level_of(case, shares[case.drive]), region)
     return is_clear, is_clear and _is_there(found, case)
 
 
@@ -268,7 +268,7 @@ def is_missed(case: Case, shares: Shares, helpers: Helpers, *, searches: bool) -
     for radius_m, any_yaw in FIRST_SEARCHES if searches and not case.before else ():
         region = Region(case.guess, radius_m, any_yaw)
         found = helpers.call(searched, case.drive, case.index, region)
-        if not found.why_unclear(_level_of(case, shares)):
+        if not found.why_unclear(_level_of(case, shares), region):
             return not _is_there(found, case)
     return True
 

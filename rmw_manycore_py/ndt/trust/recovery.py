@@ -150,7 +150,7 @@ class Recovery:
         if scan is None or self.step is Step.TRACKING:  # recovered without it
             return False
         assert self._region is not None
-        unclear = found.why_unclear(judge.level)
+        unclear = found.why_unclear(judge.level, self._region)
         self.note = f"{self.step.value}: {unclear or 'clear'}"
         if unclear:
             return False

@@ -29,7 +29,7 @@ AROUND_YAW_RAD = np.radians(45.0)  # of a region without any_yaw
 TILT_RAD = np.radians(15.0)  # of a result, against the gravity that is known
 SAME_M, SAME_RAD = 1.0, np.radians(10.0)  # closer results count as one place
 MARGIN = 0.05  # minimum lead of the best place, relative to its fit
-ONLY_SHARE = 0.95  # of the fit of a first pose: that of the only place which fits
+ONLY_SHARE = 0.95  # of the fit of a first pose: that of a place which stands out
 
 # A place also stands out if its lead is large compared with the differences of the others.
 MIN_LEAD, LEAD_DEVIATIONS, MIN_PLACES = 0.01, 2.5, 5
@@ -68,17 +68,19 @@ class Found:
         best, second = (place.fit for place in self.places[:2])
         return (best - second) / best if best > 0.0 else 0.0
 
-    def why_unclear(self, level: ScoreLevel) -> str:
+    def why_unclear(self, level: ScoreLevel, region: Region) -> str:
         """Return why the best place is not accepted; "" if it is.
 
-        The right place may be outside of the region, and a wrong one the best: so the best must fit
-        nearly as well as a first pose, of which nothing says that it is the only one.
+        The right place may be outside of the region, and a wrong one the best. So the best must fit
+        as well as a first pose; nearly as well in a region of any yaw, which is large enough to
+        contain places like it.
         """
         if not self.places:
             return "the scan fits nowhere"
         best = self.places[0]
         explained = best.explained_score
-        if not (explained > level.of_explained or best.fit > ONLY_SHARE * level.of_first):
+        least_fit = level.of_first * (ONLY_SHARE if region.any_yaw else 1.0)
+        if not (explained > level.of_explained or best.fit > least_fit):
             return f"the best explained score {explained:.3f} is below {level.of_explained:.3f}"
         if self.margin < MARGIN:
             other = self.places[1]

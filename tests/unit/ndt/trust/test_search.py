@@ -153,16 +153,17 @@ def lost_in(matcher: SerialMatcher, scan: np.ndarray) -> tuple[Found, str]:
     """Search the whole map; return also why the best place is not accepted."""
     region = Region(np.eye(4), np.inf, any_yaw=True)
     found = search(matcher, scan_points(scan), region)
-    return found, found.why_unclear(judge_of(matcher.map).level)
+    return found, found.why_unclear(judge_of(matcher.map).level, region)
 
 
 @pytest.mark.parametrize(("index", "ahead_m"), [(3, 30.0), (5, -30.0), (61, 30.0)])
 def test_a_search_that_does_not_reach_the_scan_finds_nothing(drives, matcher, index, ahead_m):
     """One place stands out from the others there, and is wrong."""
     centre = drives[0].poses[index] @ pose(ahead_m, 0.0, 0.0, 0.0, 0.0, 0.0)
-    found = search(matcher, scan_points(drives[0].scan(index)), Region(centre, 20.0, any_yaw=True))
+    region = Region(centre, 20.0, any_yaw=True)
+    found = search(matcher, scan_points(drives[0].scan(index)), region)
     assert found.margin > MARGIN
-    assert "explained score" in found.why_unclear(judge_of(matcher.map).level)
+    assert "explained score" in found.why_unclear(judge_of(matcher.map).level, region)
 
 
 def test_a_scan_is_found_without_a_guess(drives, matcher):
