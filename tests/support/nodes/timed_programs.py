@@ -22,7 +22,7 @@ from rmw_manycore_py.papers.roslite.localization.remote_pass import RemotePass
 
 _START_NS = 10**18
 _POINTS = np.zeros(3, np.float32)
-_FUTEX = "202 "
+_FUTEX = "202"
 
 
 def _compute() -> None:
@@ -150,11 +150,22 @@ def family() -> None:
     with transport.join():
         time.sleep(0.2)
         child = subprocess.Popen([sys.executable, __file__, "child"])
-        call = Path(f"/proc/{child.pid}/syscall")
-        maps = Path(f"/proc/{child.pid}/maps")
-        while "virtual_time" not in maps.read_text() or not call.read_text().startswith(_FUTEX):
-            pass  # time stands until the child waits to join
+        while not _waits_to_join(child.pid):
+            pass  # time stands
         _publish(1)
+
+
+def _waits_to_join(pid: int) -> bool:
+    """Return whether a process waits for its time; while it starts it waits on other words."""
+    number, *words = Path(f"/proc/{pid}/syscall").read_text().split()
+    if number != _FUTEX:
+        return False
+    address = int(words[0], 16)
+    for line in Path(f"/proc/{pid}/maps").read_text().splitlines():
+        first, last = (int(word, 16) for word in line.split()[0].split("-"))
+        if first <= address < last:
+            return "memfd:virtual_time" in line
+    return False
 
 
 def child() -> None:
