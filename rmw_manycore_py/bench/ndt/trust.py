@@ -137,6 +137,10 @@ def judged(
 
 def _missed(near: Sequence[Case], shares: dict[str, Shares], helpers: Helpers) -> list[Result]:
     """Return how many scans with a near guess get no right pose at once, also by drive."""
+
+    def missed(searches: bool, case: Case) -> bool:
+        return is_missed(case, shares[case.drive], helpers, searches=searches)
+
     starts = [replace(case, before=()) for case in near]
     results = []
     for question, cases, searches in (
@@ -144,11 +148,7 @@ def _missed(near: Sequence[Case], shares: dict[str, Shares], helpers: Helpers) -
         (MISSED_AT_START, starts, False),
         (NEVER_FOUND, starts, True),
     ):
-
-        def missed(case: Case, searches: bool = searches) -> bool:
-            return is_missed(case, shares[case.drive], helpers, searches=searches)
-
-        is_so = list(helpers.map(missed, cases))
+        is_so = list(helpers.map(partial(missed, searches), cases))
         results.append(_share(question, OURS, is_so))
         for name in shares:
             of_drive = [one for one, case in zip(is_so, cases, strict=True) if case.drive == name]
@@ -171,9 +171,8 @@ def _searches(
     if not picked:
         return []
     outside = [
-        replace(case, guess=moved(case.truth, OUTSIDE_M, heading))
+        replace(case, guess=moved(case.truth, OUTSIDE_M, _heading_rad(case) + np.pi * (index % 2)))
         for index, case in enumerate(picked)
-        for heading in [np.arctan2(case.truth[1, 0], case.truth[0, 0]) + np.pi * (index % 2)]
         if not case.repeats
     ]
     found = partial(_found_by_search, shares, helpers)
@@ -194,6 +193,10 @@ def _found_by_search(shares: dict[str, Shares], helpers: Helpers, case: Case) ->
     found = helpers.call(searched, case.drive, case.index, region)
     is_clear = not found.why_unclear(_level_of(case, shares[case.drive]), region)
     return is_clear, is_clear and _is_there(found, case)
+
+
+def _heading_rad(case: Case) -> float:
+    return float(np.arctan2(case.truth[1, 0], case.truth[0, 0]))
 
 
 def _is_in_reach(case: Case) -> bool:

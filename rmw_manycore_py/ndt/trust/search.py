@@ -79,8 +79,8 @@ class Found:
             return "the scan fits nowhere"
         best = self.places[0]
         explained = best.explained_score
-        least_fit = level.of_first * (ONLY_SHARE if region.any_yaw else 1.0)
-        if not (explained > level.of_explained or best.fit > least_fit):
+        min_fit = level.of_first * (ONLY_SHARE if region.any_yaw else 1.0)
+        if not (explained > level.of_explained or best.fit > min_fit):
             return f"the best explained score {explained:.3f} is below {level.of_explained:.3f}"
         if self.margin < MARGIN:
             other = self.places[1]

@@ -67,19 +67,18 @@ def hear(topic: str, words: dict[str, Any]) -> None:
         spin_until(node, lambda: False, 1e6)
 
 
-def flood(topic: str, size: int = 200_000, depth: int = 10) -> None:
+def flood(topic: str) -> None:
     """Publish much more than the buffers of a slow link or a stopped subscriber hold."""
     with peer_node("flooder") as node:
-        message = type_of(STRING)(data="x" * size)
-        kept = qos({"depth": depth})
-        publisher = node.create_publisher(type_of(STRING), topic, kept)
+        message = type_of(STRING)(data="x" * 200_000)
+        publisher = node.create_publisher(type_of(STRING), topic, 10)
         node.create_timer(0.005, lambda: publisher.publish(message))
         announce("flooding")
         spin_until(node, lambda: False, 1e6)
 
 
 def answer(topic: str, answers: str, window: int) -> None:
-    """Publish an answer to each message, once somebody hears answers; see `flood_by_answers`."""
+    """Publish an answer to each message, once answers have a subscription; `flood_by_answers`."""
     with peer_node("answerer") as node:
         publisher = node.create_publisher(type_of(STRING), answers, window)
         spin_until(node, publisher.get_subscription_count)
