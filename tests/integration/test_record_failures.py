@@ -82,7 +82,7 @@ def test_a_terminal_that_hangs_up_leaves_a_whole_recording(
     with closing(Person(shell, environment(platform))) as person:
         person.sees(r"\d messages")
         person.hangs_up()
-        person.process.wait(TIMEOUT_S)
+        assert person.process.wait(TIMEOUT_S) == 0
     check_is_whole(bag)
 
 

@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import os
+import select
 import sys
+
+_OUTPUTS = (1, 2)
 
 
 def open_closed_streams() -> None:
@@ -17,3 +20,15 @@ def open_closed_streams() -> None:
             null = os.open(os.devnull, os.O_RDWR)  # the lowest descriptor that is free
             os.set_inheritable(null, True)
             setattr(sys, name, open(null, mode, closefd=False))  # noqa: SIM115
+
+
+def leave_hung_up_terminal() -> None:
+    """Discard further output if the terminal has hung up: each write to it would be an error."""
+    outputs = select.poll()
+    for descriptor in _OUTPUTS:
+        outputs.register(descriptor, 0)
+    for descriptor, event in outputs.poll(0):
+        if event & select.POLLHUP:
+            null = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(null, descriptor)
+            os.close(null)

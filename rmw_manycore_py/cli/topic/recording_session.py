@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rmw_manycore_py.cli.common.printing import counted, echo, size_text
+from rmw_manycore_py.cli.common.streams import leave_hung_up_terminal
 from rmw_manycore_py.cli.topic.alarm import Alarm
 from rmw_manycore_py.cli.topic.status_line import StatusLine
 from rmw_manycore_py.process.signals import signal_inbox
@@ -66,6 +67,7 @@ def record(platform: str | None, settings: Settings, *, as_json: bool) -> None:
     if recorder.failure is not None:
         raise recorder.failure
     settings.target.describe(found)
+    leave_hung_up_terminal()  # the recording is whole all the same
     _report(settings.target, output, recorder, time.monotonic() - began_s, as_json)
 
 
