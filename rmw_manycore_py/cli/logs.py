@@ -20,6 +20,7 @@ from rmw_manycore_py.launch.event_text import SUPERVISOR
 from rmw_manycore_py.launch.events import Output
 from rmw_manycore_py.launch.runs.client import Client
 from rmw_manycore_py.launch.runs.directory import RunDirectory, runs_of
+from rmw_manycore_py.launch.runs.log_file import RUN_LOG
 from rmw_manycore_py.launch.runs.log_reader import LogLine, NodeLog, in_order
 
 
@@ -62,8 +63,9 @@ def command(
     runs = runs_of(platform)
     if not runs:
         raise ManycoreError(no_run(platform))
-    chosen = nodes_by_run(runs, nodes) or [(run, [SUPERVISOR, *run.nodes]) for run in runs]
-    logs = [NodeLog(run, name) for run, names in chosen for name in names]
+    chosen = nodes_by_run(runs, nodes) or [(run, [RUN_LOG, *run.nodes]) for run in runs]
+    shown = {RUN_LOG: SUPERVISOR}
+    logs = [NodeLog(run, name, shown.get(name, name)) for run, names in chosen for name in names]
     printer = _Printer([log.node for log in logs], timestamps, no_prefix, as_json)
     with ExitStack() as stack:
         # Subscribe before reading, so that no line falls in between.

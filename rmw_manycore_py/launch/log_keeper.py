@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from rmw_manycore_py.launch.event_text import SUPERVISOR, text_of
+from rmw_manycore_py.launch.event_text import text_of
 from rmw_manycore_py.launch.events import Ended, Event, Notice, Output
-from rmw_manycore_py.launch.runs.log_file import LogFile, share_of
+from rmw_manycore_py.launch.runs.log_file import RUN_LOG, LogFile, share_of
 
 
 class LogKeeper:
-    """Writes a log file per node; a full disk costs lines, never the run.
+    """Writes a log file per node, and one of the run; a full disk costs lines, never the run.
 
     :param warn: called once per node whose lines cannot be stored.
     :param changed: called after each line.
@@ -25,9 +25,8 @@ class LogKeeper:
         warn: Callable[[Event], None],
         changed: Callable[[], None],
     ) -> None:
-        names = (SUPERVISOR, *nodes)
         self._directory = directory
-        self._max_bytes = share_of(len(names))
+        self._max_bytes = share_of(1 + len(nodes))
         self._files: dict[str, LogFile] = {}
         self._warn = warn
         self._changed = changed
@@ -37,10 +36,10 @@ class LogKeeper:
         if isinstance(event, Output):
             self._write(event.node, event.line)
         elif (text := text_of(event)) is not None:
-            self._write(SUPERVISOR, text)
+            self._write(RUN_LOG, text)
             if isinstance(event, Ended):
                 for line in event.last_lines:
-                    self._write(SUPERVISOR, f"    {line}")
+                    self._write(RUN_LOG, f"    {line}")
 
     def close(self) -> None:
         """Close all files."""

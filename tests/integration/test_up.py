@@ -109,6 +109,16 @@ def test_what_cannot_be_started_fails_up(manycore, tmp_path, platform) -> None:
     assert not the_run(platform).is_alive
 
 
+def test_a_node_may_be_called_as_the_run_is(manycore, tmp_path) -> None:
+    command = "command: [echo, its line], ros_arguments: false"
+    run = manycore("run", write(tmp_path, manycore=f"{{cluster: 1, core: 1, {command}}}"))
+    assert run.lines.count("manycore | its line") == 1
+    logs = manycore("logs").lines
+    assert logs.count("manycore | its line") == 1
+    assert len([line for line in logs if "started: cluster 1 core 1" in line]) == 1
+    assert manycore("logs", "--no-prefix", "manycore").lines == ["its line"]
+
+
 def test_a_platform_is_up_once(manycore, tmp_path, platform) -> None:
     mapfile = write(tmp_path, sleeper=SLEEPER)
     manycore("up", "-d", mapfile)

@@ -16,6 +16,7 @@ MAX_NODE_BYTES = 8 << 20
 MIN_NODE_BYTES = 64 << 10
 MAX_RUN_BYTES = 256 << 20
 SUFFIX, OLDER_SUFFIX = ".log", ".log.1"
+RUN_LOG = "(run)"  # in place of a node's name: that of the run itself, as no node is called
 _SECOND = "%Y-%m-%dT%H:%M:%S"
 TIME_CHARACTERS = len("2026-01-01T00:00:00.000000Z")
 

@@ -25,10 +25,13 @@ class LogLine:
 
 
 class NodeLog:
-    """Incremental reader of a node's log."""
+    """Incremental reader of the log of a node, or of the run.
 
-    def __init__(self, run: RunDirectory, node: str) -> None:
-        self.node = node
+    :param shown: the name in the lines, if it is another one.
+    """
+
+    def __init__(self, run: RunDirectory, node: str, shown: str = "") -> None:
+        self.node = shown or node
         self._path = log_path(run.logs, node)
         self._older = log_path(run.logs, node, OLDER_SUFFIX)
         self._descriptor = -1
