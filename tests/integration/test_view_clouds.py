@@ -19,14 +19,14 @@ pytestmark = [
 
 # Latched clouds: a square of 20 x 10 m, its north-eastern corner higher, far from the map's origin;
 # a map in the same frame, another one in another frame, and a cloud without points. The first map
-# is published again in each frame that comes by a message.
+# is published again in each frame that comes by a message, and without points to clear it.
 CLOUDS = """
 import numpy as np
 import rclpy
 from builtin_interfaces.msg import Time
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
-from std_msgs.msg import String
+from std_msgs.msg import Empty, String
 from rmw_manycore_py.ndt.messages.point_cloud import encode
 
 rclpy.init()
@@ -41,12 +41,13 @@ publishers = {
     name: node.create_publisher(PointCloud2, name, kept) for node, name in zip(nodes, clouds)
 }
 
-def publish(name, frame):
-    publishers[name].publish(encode(clouds[name][0], Time(), frame))
+def publish(name, frame, count=4):
+    publishers[name].publish(encode(clouds[name][0][:count], Time(), frame))
 
 for name, (_, frame) in clouds.items():
     publish(name, frame)
 nodes[0].create_subscription(String, "frame", lambda words: publish("city", words.data), 10)
+nodes[0].create_subscription(Empty, "clear", lambda _: publish("city", "map", 0), 10)
 print("published", flush=True)
 rclpy.spin(nodes[0])
 """
@@ -130,6 +131,18 @@ def test_a_map_that_goes_to_another_frame_is_no_longer_drawn(clouds, manycore) -
     manycore("topic", "pub", "--once", "/frame", "std_msgs/msg/String", "data: elsewhere")
     clouds.until(lambda: "grey" not in clouds.text("#cloud-text"), "the text without a map")
     assert GREY not in pixels_by_colour(clouds)
+    assert clouds.complaints() == []
+
+
+def test_a_map_that_is_cleared_is_no_longer_drawn(clouds, manycore) -> None:
+    show_messages(clouds, "/square")
+    clouds.wait_for_text("#cloud-text", "grey: /city")
+    manycore("topic", "pub", "--once", "/clear", "std_msgs/msg/Empty")
+    clouds.until(lambda: "grey" not in clouds.text("#cloud-text"), "the text without a map")
+    assert GREY not in pixels_by_colour(clouds)
+    manycore("topic", "pub", "--once", "/frame", "std_msgs/msg/String", "data: map")
+    clouds.wait_for_text("#cloud-text", "grey: /city")
+    assert GREY in pixels_by_colour(clouds)
     assert clouds.complaints() == []
 
 

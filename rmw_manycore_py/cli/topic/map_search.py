@@ -50,15 +50,21 @@ class MapSearch:
         if message.header.frame_id != self._frame:
             self._cancels.pop(topic)()
             self._rejected.add(topic)
-            if self._shown is not None:  # of this topic, which alone was kept
-                self._shown = None
-                self._show({"map": None})
+            self._hide()
             return
         row = {"topic": topic, **cloud_of(message, MAX_MAP_POINTS)}
-        if "points" in row and row != self._shown:  # some maps are published over and over
+        if "points" not in row:  # cleared, or damaged
+            self._hide()
+        elif row != self._shown:  # some maps are published over and over
             self._keep_only(topic)
             self._shown = row
             self._show({"map": row})
+
+    def _hide(self) -> None:
+        """Show no map any longer: that of another topic has no subscription."""
+        if self._shown is not None:
+            self._shown = None
+            self._show({"map": None})
 
     def _keep_only(self, topic: str | None) -> None:
         for other in self._cancels.keys() - {topic}:

@@ -69,7 +69,7 @@ export class CloudPicture {
     }
   }
 
-  // map: null when the one that is shown has gone to another frame
+  // map: null when the one that is shown has gone to another frame, or is empty
   showMap(map) {
     this.map = map === null ? null : decoded(map);
     this.tell();
