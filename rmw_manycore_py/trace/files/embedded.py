@@ -8,7 +8,7 @@ import binascii
 import json
 import zlib
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, NonNegativeInt, ValidationError
@@ -18,6 +18,7 @@ from rmw_manycore_py.trace.events import EVENT, Endpoint, Process, Thread, Trace
 
 VERSION = 1
 _QUICKLY = 1  # zlib level; takes a tenth of the default's time
+_Cluster = Annotated[int, Field(ge=0, le=64)]  # as many as a platform may have; 0: none
 
 
 class _Strict(BaseModel):
@@ -33,7 +34,7 @@ class _Thread(_Strict):
 
 class _Process(_Strict):
     pid: int
-    cluster: int
+    cluster: _Cluster
     core: int | None
     host_cpu: int | None
     label: str
@@ -50,7 +51,7 @@ class _Endpoint(_Strict):
     topic: str
     type: str
     node: str
-    cluster: int
+    cluster: _Cluster
 
 
 class _Version(BaseModel):

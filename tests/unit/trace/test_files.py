@@ -63,6 +63,7 @@ def test_what_is_no_whole_trace_is_refused_by_name(tmp_path: Path, suffix: str) 
         ('"version": 1', '"version": 2, "clock": "tai"', "version: expected 1, found 2"),
         ('"role": "topic"', '"role": "action"', "endpoints.0.role: .* found .*'topic', 'request'"),
         ('"id": ', '"id": 99999', "endpoints.0.id: .* found .*less than"),
+        ('"cluster": 3', '"cluster": 1000000', "processes.2.cluster: .* found .*to 64"),
     ],
 )
 def test_a_header_of_another_version_or_with_other_values_is_refused(
