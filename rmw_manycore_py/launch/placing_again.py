@@ -75,7 +75,8 @@ class Task:
         mapfile = self._moved(self.move) if self.move else self._read_again()
         occupied = self._occupied()
         kept = Kept.of(self.runs.mapfile, self.runs.placement)
-        placement = resolve(mapfile, occupied, kept=kept)
+        launch = self.runs.placement.launch if self.move else None
+        placement = resolve(mapfile, occupied, kept=kept, launch=launch)
         old, new = self.runs.placement.bridge, placement.bridge
         if (old and _without_cores(old)) != (new and _without_cores(new)):
             raise self._kept("what is bridged")

@@ -302,6 +302,22 @@ def test_a_node_is_moved_while_it_runs(manycore, mapfile, platform) -> None:
     manycore("stop")
 
 
+def test_a_moved_node_stays_as_its_launch_file_was(manycore, mapfile, platform) -> None:
+    launch = mapfile.with_name("two.launch.xml")
+    entry = '<executable name="{0}" cmd="sleep {1}"/>'
+    entries = [entry.format("one", 1000), entry.format("two", 1000)]
+    launch.write_text(f"<launch>{''.join(entries)}</launch>")
+    write(mapfile, f"launch_path: {launch.name}\n", one="cluster: 1", two="cluster: 1")
+    manycore("up", "-d", mapfile)
+    launch.write_text(f"<launch>{entry.format('one', 2000)}</launch>")
+    moved = manycore("move", "one", "2").lines
+    assert "manycore | one changes: cluster 1 core 1 -> cluster 2 core 1" in moved
+    launch.write_text("<launch>")
+    manycore("move", "two", "2")
+    assert places(nodes_of(manycore, platform)) == {"one": (2, 1), "two": (2, 2)}
+    manycore("stop")
+
+
 def test_a_process_of_another_run_keeps_its_core(manycore, mapfile, platform) -> None:
     talker = "module: rmw_manycore_py.examples.talker"
     write(mapfile, sleeper=f"cluster: 1, {SLEEP}")

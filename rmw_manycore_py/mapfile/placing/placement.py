@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
+from rmw_manycore_py.mapfile.launch_file import LaunchFile
 from rmw_manycore_py.mapfile.placing.parameters import GeneratedFile, Source, words_of
 from rmw_manycore_py.native.enums import Transfer, ZeroCopy
 from rmw_manycore_py.platform.smem import DEFAULT_DEPTH
@@ -254,6 +255,7 @@ class Placement:
     :param notices: what the user should know, although nothing is wrong.
     :param links: what joins this host's part with those of other hosts: from all of them, and to
         each; none for the whole.
+    :param launch: the launch file as it was read.
     """
 
     name: str
@@ -265,6 +267,7 @@ class Placement:
     bridge: BridgePlacement | None
     notices: tuple[str, ...]
     links: tuple[BridgePlacement, ...] = ()
+    launch: LaunchFile | None = None
 
     @property
     def crossings(self) -> tuple[BridgePlacement, ...]:

@@ -52,15 +52,17 @@ def resolve(
     *,
     to_start: bool = True,
     kept: Kept = FRESH,
+    launch: LaunchFile | None = None,
 ) -> Placement:
     """Resolve everything a mapfile refers to.
 
     :param occupied: cores used by nodes of other runs on the platform.
     :param to_start: False to inspect only: then nodes of a plan need not be installed.
     :param kept: places of the mapfile's nodes that run already.
+    :param launch: its launch file as it was; by default, it is read.
     :raises MapfileError: for everything that does not exist.
     """
-    launch = read_launch(mapfile)
+    launch = launch or read_launch(mapfile)
     is_plan = mapfile.sections.plan and not to_start
     starts = node_starts(mapfile, launch, is_plan=is_plan)
     return _placement(mapfile, starts, launch, occupied, kept)
@@ -119,6 +121,7 @@ def _placement(
         topics=topics,
         memory=memory,
         host_cpus=host_cpus,
+        launch=launch,
         bridge=bridge,
         links=links,
         notices=(
