@@ -58,7 +58,7 @@ def command(sources: tuple[str, ...], profile: str, plan: bool, output: Path | N
     if len(sources) == 1 and sources[0].endswith(".json"):
         text = plan_of(load(Path(sources[0])), platform_shape(profile))
     else:
-        arguments = dict(source.split(":=", 1) for source in sources if ":=" in source)
+        arguments = dict(_argument(source) for source in sources if ":=" in source)
         files = [Path(source) for source in sources if ":=" not in source]
         text = init(files, output.parent if output else None, profile, arguments, plan=plan)
     if output is None:
@@ -69,3 +69,11 @@ def command(sources: tuple[str, ...], profile: str, plan: bool, output: Path | N
             file.write(text)
     except OSError as error:
         raise ManycoreError(f"{output}: {error.strerror}", EXIT_BAD_INPUT) from error
+
+
+def _argument(text: str) -> tuple[str, str]:
+    """Return name and value of a launch argument; `ros2 launch` refuses the same ones."""
+    name, _, value = text.partition(":=")
+    if not (name and value):
+        raise ManycoreError(f"'{text}': expected NAME:=VALUE", EXIT_BAD_INPUT)
+    return name, value

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.errors.suggestions import did_you_mean
 from rmw_manycore_py.mapfile.launch_file import (
     ExpandedFile,
     LaunchedComponent,
@@ -36,17 +37,20 @@ def read_launch(mapfile: Mapfile) -> LaunchFile | None:
     if sections.launch_path is None:
         return None
     launch = read_launch_file(mapfile.file(sections.launch_path), sections.launch_arguments)
-    known = ", ".join(sorted(launch.arguments)) or "it has none"
-    problems = [
-        mapfile.document.problem(
-            ("launch_arguments", name), f"an argument of the launch file ({known})", f"'{name}'"
-        )
-        for name in sections.launch_arguments
-        if name not in launch.arguments
-    ]
-    if problems:
-        raise MapfileError(*problems)
-    return launch
+    undeclared = (name for name in sections.launch_arguments if name not in launch.arguments)
+    notices = (_undeclared(mapfile, name, launch) for name in undeclared)
+    return replace(launch, notices=(*launch.notices, *notices))
+
+
+def _undeclared(mapfile: Mapfile, name: str, launch: LaunchFile) -> str:
+    """Return the notice of an argument that the launch file may use all the same."""
+    line = mapfile.document.line(("launch_arguments", name))
+    declared = ", ".join(sorted(launch.arguments)) or "nothing"
+    hint = did_you_mean(name, launch.arguments)
+    return (
+        f"{mapfile.path}:{line}: launch_arguments.{name}: {launch.file.name} does not declare it "
+        f"(it declares {declared}){hint}"
+    )
 
 
 def find_launched(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> Launched | None:

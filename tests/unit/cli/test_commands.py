@@ -255,6 +255,13 @@ def test_map_init_writes_a_template_once(tmp_path: Path) -> None:
     assert "exists" in again.output
 
 
+@pytest.mark.parametrize("argument", [":=1", "who:="])
+def test_map_init_refuses_half_an_argument(tmp_path: Path, argument: str) -> None:
+    result = manycore("map", "init", str(tmp_path / "demo.launch.xml"), argument)
+    assert result.exit_code == EXIT_BAD_INPUT
+    assert f"'{argument}': expected NAME:=VALUE" in result.output
+
+
 def test_create_lists_what_it_wrote(mapfile: Path, tmp_path: Path) -> None:
     result = manycore("create", str(mapfile), "-o", str(tmp_path / "out"))
     assert result.exit_code == 0

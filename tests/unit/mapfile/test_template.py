@@ -177,6 +177,26 @@ def test_arguments_of_a_launch_file_are_kept(tmp_path: Path, prefix: Path) -> No
         init([tmp_path], tmp_path, arguments={"who": "left"})
 
 
+def test_arguments_that_a_launch_file_does_not_declare_reach_it_with_a_notice(
+    tmp_path: Path, prefix: Path
+) -> None:
+    install(prefix, "p", "talker")
+    launch = tmp_path / "demo.launch.xml"
+    launch.write_text(
+        '<launch><arg name="rate" default="1"/>'
+        '<node pkg="p" exec="talker" name="$(var who)"/></launch>'
+    )
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text(init([launch], tmp_path, arguments={"who": "left", "ratee": "2"}))
+    placement = check(mapfile)
+    assert [node.full_name for node in placement.nodes] == ["/left"]
+    does_not = "demo.launch.xml does not declare it (it declares rate)"
+    assert [n for n in placement.notices if "launch_arguments" in n] == [
+        f"{mapfile}:5: launch_arguments.who: {does_not}",
+        f"{mapfile}:6: launch_arguments.ratee: {does_not}; did you mean 'rate'?",
+    ]
+
+
 def test_components_run_alone_where_only_they_are_installed(tmp_path: Path, prefix: Path) -> None:
     install(prefix, "p", "camera", content="#!/bin/sh\n# NodeFactoryTemplate<p::Camera>\n")
     install(prefix, "p", "other", content="#!/bin/sh\n# NodeFactoryTemplate<p::Other>\n")
