@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What nodes of a launch file get under `manycore run`: parameters, CPU, scheduling."""
+"""What nodes get under `manycore run`: parameters, texts, CPU, scheduling."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import rmw_manycore_py as manycore
+from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from support import IS_MANYCORE, wait_until
 from support.peers.programs import forked_manycore
 from support.processes.commands import manycore_command
@@ -35,6 +36,7 @@ policies = {{os.SCHED_OTHER: "other", os.SCHED_BATCH: "batch"}}
 policy = policies[os.sched_getscheduler(0)]
 print("on", *os.sched_getaffinity(0), policy, "nice", os.nice(0), flush=True)
 """
+TEXTS = ("on", "No", "0o17", "017", "1_000", "1e3", "1.50", "1:30", "2026-01-01", "2026-13-45")
 Run = Callable[[str, str], Program]
 
 
@@ -57,6 +59,27 @@ def run(start, tmp_path: Path, platform: str) -> Run:
         return start(command, AMENT_PREFIX_PATH=str(tmp_path / "prefix"))
 
     return run_nodes
+
+
+def test_texts_of_a_mapfile_reach_a_program_as_they_are_written(start, tmp_path, platform) -> None:
+    launch = "<launch><arg name='given'/><executable name='two' cmd='echo $(var given)'/></launch>"
+    (tmp_path / "two.launch.xml").write_text(launch)
+    text = ", ".join(TEXTS)
+    show = "import os, sys; print(*sys.argv[1:], os.environ['A'], os.environ['B'])"
+    one = f"command: [python3, -c, {show!r}, {text}], arguments: [{text}], ros_arguments: false"
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text(
+        "launch_path: two.launch.xml\nlaunch_arguments: {given: 0x1F}\nnodes:\n"
+        f"  one: {{cluster: 1, {one}, env: {{A: yes, B: 017}}}}\n  two: {{cluster: 1}}\n"
+    )
+    running = start(forked_manycore("run", mapfile))
+    assert running.wait() == 0, running
+    assert f"one      | {' '.join([*TEXTS, *TEXTS])} yes 017" in running.lines
+    assert "two      | 0x1F" in running.lines
+    mapfile.write_text("nodes:\n  one: {cluster: 1, command: [echo, ~], ros_arguments: false}\n")
+    refused = start(forked_manycore("run", mapfile))
+    assert refused.wait() == EXIT_BAD_INPUT
+    assert "nodes.one.command: expected a string or a number, found nothing" in refused.output
 
 
 def test_a_node_gets_the_parameters_that_the_placement_shows(run: Run, tmp_path: Path) -> None:

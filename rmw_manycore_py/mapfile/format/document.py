@@ -12,10 +12,10 @@ import yaml
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_BYTES, BoundedLoader, BoundError
-from rmw_manycore_py.ros.parameter_files import read_scalar
 
 KeyPath = tuple[Any, ...]
-IsParameter = Callable[[KeyPath], bool]
+# How to read the text of unquoted scalars at a path; None: as YAML does.
+Reading = Callable[[KeyPath], Callable[[str], Any] | None]
 
 
 @dataclass
@@ -68,28 +68,27 @@ def _unreadable(path: Path, problem: Problem | None, reason: str) -> MapfileErro
 
 
 def read_yaml(
-    path: Path, repeated: Collection[str] = (), read_by_rcl: IsParameter | None = None
+    path: Path, repeated: Collection[str] = (), reading: Reading = lambda _: None
 ) -> Document:
     """Read a YAML file; see `parse_yaml`."""
-    return parse_yaml(read_text(path), path, repeated, read_by_rcl)
+    return parse_yaml(read_text(path), path, repeated, reading)
 
 
 def parse_yaml(
     text: str,
     path: Path,
     repeated: Collection[str] = (),
-    read_by_rcl: IsParameter | None = None,
+    reading: Reading = lambda _: None,
 ) -> Document:
     """Parse a YAML text; report all duplicate keys in one error.
 
-    The mappings of top-level keys in `repeated` become lists of pairs and may repeat keys. Unquoted
-    scalars at paths for which `read_by_rcl` holds have the types that rcl gives them.
+    The mappings of top-level keys in `repeated` become lists of pairs and may repeat keys.
     """
     loader = None
     try:
         loader = BoundedLoader(text)
         root = loader.get_single_node()
-        reader = _Reader(path, loader, repeated, read_by_rcl)
+        reader = _Reader(path, loader, repeated, reading)
         document = Document(path, reader.convert(root, ()) if root else None, reader.lines)
     except yaml.MarkedYAMLError as error:
         raise MapfileError(_problem(path, error)) from error
@@ -127,11 +126,11 @@ class _Reader:
         file: Path,
         loader: BoundedLoader,
         repeated: Collection[str],
-        read_by_rcl: IsParameter | None,
+        reading: Reading,
     ) -> None:
         self._file = file
         self._repeated = repeated
-        self._read_by_rcl = read_by_rcl
+        self._reading = reading
         self._loader = loader
         self._open: set[int] = set()
         self.lines: dict[KeyPath, int] = {}
@@ -194,14 +193,14 @@ class _Reader:
         return self._loader.scalar(node)
 
     def _scalar(self, node: yaml.ScalarNode, path: KeyPath) -> Any:
+        read = self._reading(path) if self._loader.is_untyped(node) else None
+        if read is not None:
+            return None if node.tag.endswith(":null") else read(node.value)
         try:
-            value = self._loader.scalar(node)
+            return self._loader.scalar(node)
         except BoundError as error:
             self.problems.append(_problem(self._file, error, dotted(path)))
             return None
-        if self._read_by_rcl and self._read_by_rcl(path) and self._loader.is_untyped(node):
-            return None if value is None else read_scalar(node.value)
-        return value
 
 
 def _is_none_entry(key: Any, node: yaml.MappingNode) -> bool:

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -28,6 +30,9 @@ from rmw_manycore_py.mapfile.format.normalise import normalise
 from rmw_manycore_py.mapfile.format.ros_lite import from_list
 from rmw_manycore_py.mapfile.format.validation import describe, problems_of
 from rmw_manycore_py.platform.topology import Topology, profile
+from rmw_manycore_py.ros.parameter_files import read_scalar
+
+_TEXTS = ("arguments", "command", "env")  # of a node: what YAML reads as `on` or 017 is no other
 
 
 def load_mapfile(
@@ -42,7 +47,7 @@ def load_mapfile(
     """
     path = Path(path)
     content = read_text(path) if text is None else text
-    document = parse_yaml(content, path, read_by_rcl=_is_parameter)
+    document = parse_yaml(content, path, reading=_reading)
     if isinstance(document.data, list):
         document = from_list(document)
     if not isinstance(document.data, dict):
@@ -64,10 +69,13 @@ def load_mapfile(
     return mapfile
 
 
-def _is_parameter(path: KeyPath) -> bool:
-    """Return whether a path is that of a value below `parameters` of a node."""
+def _reading(path: KeyPath) -> Callable[[str], Any] | None:
+    """Return how to read values of a node: parameters as rcl does, texts as they are written."""
+    if path[:1] == ("launch_arguments",):
+        return str
     node = 1 if path and isinstance(path[0], int) else 2  # a .map file is a list of nodes
-    return path[node : node + 1] == ("parameters",) and (node == 1 or path[0] == "nodes")
+    key = path[node] if len(path) > node and (node == 1 or path[0] == "nodes") else None
+    return read_scalar if key == "parameters" else str if key in _TEXTS else None
 
 
 def _validate(document: Document) -> MapfileSections:

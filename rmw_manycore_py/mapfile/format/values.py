@@ -34,7 +34,7 @@ def _environment_value(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if not isinstance(value, (str, int, float)):
-        raise refusal("a string or a number")
+        raise refusal("a string or a number", found=value)
     return str(value)
 
 
