@@ -12,6 +12,7 @@ from dataclasses import asdict
 import click
 
 from rmw_manycore_py.cli.common.completion import complete_nodes_of_runs
+from rmw_manycore_py.cli.common.finite_range import WholeRange
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.cli.common.runs import no_run, nodes_by_run
@@ -37,7 +38,7 @@ from rmw_manycore_py.launch.runs.log_reader import LogLine, NodeLog, in_order
 @click.option(
     "-n",
     "--tail",
-    type=click.IntRange(min=0),
+    type=WholeRange(min=0),
     metavar="N",
     help="Show only the last N lines of each node.",
 )

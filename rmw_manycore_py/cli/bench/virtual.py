@@ -46,7 +46,9 @@ MAX_DEVIATION = 0.02
 @mapfile_argument()
 @number_option("--runs", within=(2, None), default=6, help="Number of runs.")
 @duration_option(10.0, "Length of a run, in virtual time.", endless=False)
-@click.option("--timeout", type=Seconds(), default=300.0, help="Wall time that a run may take.")
+@click.option(
+    "--timeout", type=Seconds(endless=False), default=300.0, help="Wall time that a run may take."
+)
 @click.option(
     "--profile",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),

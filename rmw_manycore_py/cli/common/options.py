@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import click
 from click.shell_completion import CompletionItem
 
-from rmw_manycore_py.cli.common.finite_range import FiniteRange
+from rmw_manycore_py.cli.common.finite_range import FiniteRange, WholeRange
 from rmw_manycore_py.ros.domain import checked_platform, default_platform
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -143,7 +143,7 @@ def number_option(
     **more: Any,
 ) -> Callable[[Command], Command]:
     """Return an option for a number within bounds; its help shows the default."""
-    number_range: Any = click.IntRange if isinstance(default, int) else FiniteRange
+    number_range: Any = WholeRange if isinstance(default, int) else FiniteRange
     return click.option(
         *names,
         type=number_range(*within),

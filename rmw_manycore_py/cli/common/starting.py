@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.cli.common.finite_range import FiniteRange
+from rmw_manycore_py.cli.common.finite_range import FiniteRange, WholeRange
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.errors.missing_library import SIMPY, require
 from rmw_manycore_py.errors.suggestions import did_you_mean
@@ -97,7 +97,7 @@ def virtual_options(command: Callable[..., Any]) -> Callable[..., Any]:
     )
     seed = click.option(
         "--seed",
-        type=click.IntRange(min=0),
+        type=WholeRange(min=0),
         help="With --profile: seed of the random numbers, 0 by default.",
     )
     kills = click.option(

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import click
 
+from rmw_manycore_py.cli.common.finite_range import WholeRange
 from rmw_manycore_py.cli.common.options import discovery_options, examples, platform_option
 from rmw_manycore_py.cli.common.printing import echo
 from rmw_manycore_py.cli.common.tool_node import tool_node
@@ -17,7 +18,7 @@ from rmw_manycore_py.cli.component.containers import (
 
 @click.command("unload", epilog=examples("manycore component unload /container 1 2"))
 @click.argument("container", shell_complete=complete_containers)
-@click.argument("ids", metavar="ID...", nargs=-1, type=click.IntRange(0), required=True)
+@click.argument("ids", metavar="ID...", nargs=-1, type=WholeRange(0), required=True)
 @click.option("-q", "--quiet", is_flag=True, help="Print only the ids.")
 @discovery_options
 @platform_option

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_py.cli.common.finite_range import FiniteRange
+from rmw_manycore_py.cli.common.finite_range import FiniteRange, WholeRange
 from rmw_manycore_py.cli.common.options import examples, number_option
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.cli.ndt.recording_options import recording_options
@@ -80,7 +80,7 @@ KEPT_SHARE = 0.98  # of the wanted rate: less is reported
 @number_option(
     "--turn", "turn_deg", within=(-180.0, 180.0), default=3.0, help="Perturbation in degrees."
 )
-@click.option("--seed", default=1, show_default=True, help="Seed of drift and perturbation.")
+@number_option("--seed", within=(0, None), default=1, help="Seed of drift and perturbation.")
 @number_option(
     "--voxel",
     "voxel_m",
@@ -88,7 +88,7 @@ KEPT_SHARE = 0.98  # of the wanted rate: less is reported
     default=0.5,
     help="Voxel size in metres to downsample scans to; 0 sends all points.",
 )
-@click.option("--scans", type=click.IntRange(1), metavar="N", help="Play only the first N scans.")
+@click.option("--scans", type=WholeRange(1), metavar="N", help="Play only the first N scans.")
 @number_option(
     "--deadline",
     "deadline_ms",
@@ -112,7 +112,7 @@ KEPT_SHARE = 0.98  # of the wanted rate: less is reported
 @click.option("--json", "as_json_", is_flag=True, help="Print the figures as JSON.")
 @click.option(
     "--pid",
-    type=click.IntRange(1),
+    type=WholeRange(1),
     help="Measure the CPU time of this process and its children, not the one reported.",
 )
 @output_options

@@ -9,6 +9,7 @@ from typing import Any
 import click
 import numpy as np
 
+from rmw_manycore_py.cli.common.finite_range import WholeRange
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import echo, new_table, print_json, print_table
 from rmw_manycore_py.profile.files import load
@@ -26,7 +27,7 @@ from rmw_manycore_py.profile.summary import summary_of
 @click.argument("profile", type=click.Path(dir_okay=False, path_type=Path))
 @click.option(
     "--busiest",
-    type=click.IntRange(min=0),
+    type=WholeRange(min=0),
     default=10,
     show_default=True,
     metavar="N",

@@ -9,7 +9,7 @@ import click
 
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.completion import complete_services, complete_types_of_service
-from rmw_manycore_py.cli.common.finite_range import FiniteRange
+from rmw_manycore_py.cli.common.finite_range import MIN_RATE, FiniteRange
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_text import to_plain
 from rmw_manycore_py.cli.common.message_values import message_of, parse_values
@@ -36,7 +36,7 @@ from rmw_manycore_py.process.spinning import spin_once
     "-r",
     "--rate",
     "rate_hz",
-    type=FiniteRange(min=0, min_open=True),
+    type=FiniteRange(min=MIN_RATE),
     help="Repeat the call at this rate in Hz.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per response.")

@@ -15,6 +15,7 @@ from functools import partial
 import click
 from rich.console import Console
 
+from rmw_manycore_py.cli.common.finite_range import WholeRange
 from rmw_manycore_py.cli.common.keyboard import single_keys
 from rmw_manycore_py.cli.common.looking import look_at
 from rmw_manycore_py.cli.common.options import examples, number_option, platform_option
@@ -45,7 +46,7 @@ _PLAIN_WIDTH = 1000  # no line breaks in pipes and files
 @number_option(
     "--period", "period_s", within=(0.1, None), default=1.0, help="Seconds between updates."
 )
-@click.option("--count", type=click.IntRange(1), metavar="N", help="Exit after N updates.")
+@click.option("--count", type=WholeRange(1), metavar="N", help="Exit after N updates.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per update.")
 @click.option(
     "--nodes",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_py.cli.common.finite_range import FiniteRange
+from rmw_manycore_py.cli.common.finite_range import MIN_RATE, FiniteRange
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.topic.outside import leave_middleware
 from rmw_manycore_py.cli.topic.selection_options import (
@@ -78,7 +78,7 @@ def _remappings(
     "--clock",
     "clock_hz",
     metavar="[HZ]",
-    type=FiniteRange(min=0, min_open=True),
+    type=FiniteRange(min=MIN_RATE),
     is_flag=False,
     flag_value=_CLOCK_HZ,
     help=f"Publish /clock, {_CLOCK_HZ:g} times per second by default.",

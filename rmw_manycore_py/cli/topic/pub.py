@@ -13,7 +13,7 @@ import click
 from builtin_interfaces.msg import Time
 
 from rmw_manycore_py.cli.common.completion import complete_topics, complete_types_of_topic
-from rmw_manycore_py.cli.common.finite_range import FiniteRange
+from rmw_manycore_py.cli.common.finite_range import MIN_RATE, FiniteRange, WholeRange
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_values import message_of, parse_values, read_values
 from rmw_manycore_py.cli.common.options import (
@@ -58,7 +58,7 @@ KEEP_ALIVE_S = 0.1
     "--rate",
     "rate_hz",
     metavar="N",
-    type=FiniteRange(min=0, min_open=True),
+    type=FiniteRange(min=MIN_RATE),
     default=1.0,
     show_default=True,
     help="Messages per second.",
@@ -67,7 +67,7 @@ KEEP_ALIVE_S = 0.1
 @click.option(
     "-t",
     "--times",
-    type=click.IntRange(0),
+    type=WholeRange(0),
     default=0,
     metavar="N",
     help="Publish N messages and exit.",
@@ -85,7 +85,7 @@ KEEP_ALIVE_S = 0.1
     "-w",
     "--wait-matching-subscriptions",
     "wanted",
-    type=click.IntRange(0),
+    type=WholeRange(0),
     metavar="N",
     help="Wait for N matching subscriptions; default: 1 with --once and --times, else 0.",
 )

@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.cli.common.finite_range import FiniteRange
+from rmw_manycore_py.cli.common.finite_range import MAX_DEPTH, FiniteRange, WholeRange
 
 _Command = Callable[..., None]
 
@@ -90,7 +90,11 @@ def _qos_options(preset: str, unasked: str) -> Callable[[_Command], _Command]:
         @policy("durability")
         @policy("history")
         @click.option(
-            "--qos-depth", "depth", metavar="N", type=click.IntRange(1), help="QoS: messages kept."
+            "--qos-depth",
+            "depth",
+            metavar="N",
+            type=WholeRange(1, MAX_DEPTH),
+            help="QoS: messages kept.",
         )
         @policy("liveliness")
         @click.option(

@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.common.completion import complete_message_types, complete_topics
+from rmw_manycore_py.cli.common.finite_range import MAX_DEPTH
 from rmw_manycore_py.cli.common.options import examples, number_option, platform_option
 from rmw_manycore_py.cli.common.seconds import Seconds
 from rmw_manycore_py.cli.topic.outside import leave_middleware
@@ -86,7 +87,11 @@ _DEPTH = 1000
     help="Maximum memory for messages waiting to be written.",
 )
 @number_option(
-    "--depth", within=(1, None), default=_DEPTH, metavar="N", help="Minimum queue depth per topic."
+    "--depth",
+    within=(1, MAX_DEPTH),
+    default=_DEPTH,
+    metavar="N",
+    help="Minimum queue depth per topic.",
 )
 @click.option("--outside", is_flag=True, help="Record in the DDS domain $ROS_DOMAIN_ID instead.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was recorded as JSON.")

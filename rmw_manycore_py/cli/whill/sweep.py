@@ -48,7 +48,12 @@ from rmw_manycore_py.papers.roslite2.sweep import Drive, sweep
     help="Of the chip's cores, relative to the profile's machine. May be repeated.",
 )
 @duration_option(60.0, "Length of a drive, in virtual time.", endless=False)
-@click.option("--timeout", type=Seconds(), default=1800.0, help="Wall time that a drive may take.")
+@click.option(
+    "--timeout",
+    type=Seconds(endless=False),
+    default=1800.0,
+    help="Wall time that a drive may take.",
+)
 @json_option
 def command(
     course: Path,

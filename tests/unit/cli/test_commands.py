@@ -234,7 +234,7 @@ def test_a_program_that_does_not_exist_is_found_before_the_run(mapfile: Path) ->
 def test_a_part_of_a_trace_is_finite(words: tuple[str, str], tmp_path: Path) -> None:
     result = manycore("profile", "import", str(tmp_path), *words)
     assert result.exit_code == EXIT_BAD_INPUT
-    assert f"expected a number up to 1e+12, found {words[1]}." in result.output
+    assert f"expected a number up to 4e+09, found {words[1]}." in result.output
 
 
 def test_map_check_and_show(mapfile: Path) -> None:
