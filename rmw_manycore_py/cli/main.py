@@ -72,6 +72,7 @@ SECTIONS = {
     commands_at=VERBS,
     sections=SECTIONS,
     until_ctrl_c=("run", "demo", "logs", "view"),
+    help="Run and inspect ROS 2 nodes on the cores of a clustered many-core platform.",
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=examples(
         "manycore demo",
@@ -82,7 +83,7 @@ SECTIONS = {
 )
 @click.version_option(__version__, prog_name="manycore")
 def cli() -> None:
-    """Run and inspect ROS 2 nodes on the cores of a clustered many-core platform."""
+    """Group of all verbs."""
 
 
 def main() -> None:

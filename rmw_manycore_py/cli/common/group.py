@@ -75,6 +75,8 @@ class LazyGroup(click.Group):
         module, _, attribute = place.partition(":")
         command = getattr(importlib.import_module(module), attribute)
         assert isinstance(command, click.Command)
+        if command.help is None:  # `python -OO` and PYTHONOPTIMIZE=2 drop docstrings
+            command.help = _docstring(place)
         return command
 
     @override

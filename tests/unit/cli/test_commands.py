@@ -76,6 +76,16 @@ def test_help_loads_no_command() -> None:
     assert _last_line_of(program) == "[]"
 
 
+@pytest.mark.parametrize("words", [(), ("topic",), ("topic", "hz")], ids=str)
+def test_help_is_the_same_without_docstrings(words: tuple[str, ...]) -> None:
+    program = ("-m", "rmw_manycore_py.cli", *words, "--help")
+    plain, stripped = (
+        subprocess.run([sys.executable, *options, *program], stdout=subprocess.PIPE, check=True)
+        for options in ([], ["-OO"])
+    )
+    assert stripped.stdout == plain.stdout
+
+
 def test_run_does_not_load_what_few_runs_need() -> None:
     program = "import sys, rmw_manycore_py.cli.run; print('numpy' in sys.modules)"
     assert _last_line_of(program) == "False"
