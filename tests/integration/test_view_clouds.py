@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from support import IS_MANYCORE, MAPFILES, TIMEOUT_S
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 
 pytestmark = [
     pytest.mark.integration,
@@ -52,11 +52,16 @@ print("published", flush=True)
 rclpy.spin(nodes[0])
 """
 
+# Index and bytes of each pixel that differs from the first one, which is background.
 PIXELS = """
 const { width, height } = document.getElementById("cloud-canvas");
+const rows = height - arguments[0];
 const copy = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
 copy.drawImage(document.getElementById("cloud-canvas"), 0, 0);
-return [width, Array.from(copy.getImageData(0, 0, width, height).data)];
+const values = new Uint32Array(copy.getImageData(0, 0, width, rows).data.buffer);
+const drawn = [0, values[0]];
+values.forEach((value, index) => { if (value !== values[0]) drawn.push(index, value); });
+return [width, drawn];
 """
 BACK, GREY = (18, 22, 28), (112, 125, 138)
 SCALE_ROWS = 40
@@ -64,13 +69,14 @@ SCALE_ROWS = 40
 
 def pixels_by_colour(browser) -> dict[tuple[int, ...], np.ndarray]:
     """Return x and y (up) of the pixels of each colour, without the rows of the scale."""
-    width, values = browser.driver.execute_script(PIXELS)
-    picture = np.array(values, np.uint8).reshape(-1, width, 4)[:-SCALE_ROWS, :, :3]
-    found: dict[tuple[int, ...], np.ndarray] = {}
-    for colour in map(tuple, np.unique(picture.reshape(-1, 3), axis=0).tolist()):
-        rows, columns = np.nonzero((picture == colour).all(axis=2))
-        found[colour] = np.column_stack([columns, -rows])
-    assert BACK in found
+    width, drawn = browser.driver.execute_script(PIXELS, SCALE_ROWS)
+    indices, values = np.array(drawn, np.uint32).reshape(-1, 2).T
+    pixels = np.column_stack([indices % width, -(indices // width).astype(int)])
+    colours = values.astype("<u4").view(np.uint8).reshape(-1, 4)[:, :3]
+    found: dict[tuple[int, ...], np.ndarray] = {
+        colour: pixels[(colours == colour).all(axis=1)]
+        for colour in map(tuple, np.unique(colours, axis=0).tolist())
+    }
     del found[BACK]
     return found
 
@@ -210,12 +216,12 @@ def test_a_cloud_without_points_is_a_text(clouds) -> None:
 
 
 def test_an_aligned_scan_is_seen_in_the_map(view, browser, start, street) -> None:
-    run = start(manycore_command("run", MAPFILES / "ndt_offload.yaml"))
+    run = start(forked_manycore("run", MAPFILES / "ndt_offload.yaml"))
     run.wait_for("ndt_scan_matcher started")
     browser.open(view[1])
     show_messages(browser, "/points_aligned")
     patiently = ("--wait", "--timeout", 2 * TIMEOUT_S, "--deadline", 1e3 * TIMEOUT_S)
-    replay = start(manycore_command("ndt", "replay", street / "drive.npz", *map(str, patiently)))
+    replay = start(forked_manycore("ndt", "replay", street / "drive.npz", *map(str, patiently)))
     browser.wait_for_text("#cloud-text", "points in frame 'map'")
     browser.wait_for_text("#cloud-text", "grey: /pointcloud_map")
     browser.wait_for_text("#cloud-judgement:not(.alarm)", "newest scan: believed")
@@ -227,10 +233,10 @@ def test_an_aligned_scan_is_seen_in_the_map(view, browser, start, street) -> Non
 
 
 def test_scans_without_a_cloud_are_judged_too(view, browser, start, street) -> None:
-    run = start(manycore_command("run", MAPFILES / "ndt_offload.yaml"))
+    run = start(forked_manycore("run", MAPFILES / "ndt_offload.yaml"))
     run.wait_for("ndt_scan_matcher started")
     browser.open(view[1])
     show_messages(browser, "/points_aligned")
-    start(manycore_command("ndt", "replay", street / "drive.npz", "--no-map", "--timeout", "30"))
+    start(forked_manycore("ndt", "replay", street / "drive.npz", "--no-map", "--timeout", "30"))
     browser.wait_for_text("#cloud-judgement.alarm", "newest scan: refused: there is no map yet")
     assert not browser.find("#cloud-canvas").is_displayed()
