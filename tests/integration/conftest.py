@@ -16,7 +16,6 @@ from support import wait_until
 from support.installs.installing import Installation, pack_wheel
 from support.nodes.bridging import Bridge
 from support.peers.programs import forked_example, forked_manycore
-from support.processes.commands import manycore_command
 from support.processes.platforms import leftovers, unique_platform
 from support.session.sharing import made_once
 
@@ -133,7 +132,7 @@ def log_of(start):
 
     def run(mapfile: Path, duration_s: float, *options: str) -> dict[str, list[str]]:
         time = ("--virtual", *(options or ("--instant",)), "--duration", f"{duration_s}")
-        run = start(manycore_command("run", mapfile, *time, "--json"))
+        run = start(forked_manycore("run", mapfile, *time, "--json"))
         run.wait_for(r'"event": "finished"')
         assert run.wait() == 0
         log = defaultdict(list)

@@ -12,6 +12,7 @@ import pytest
 
 from rmw_manycore_py.native import _transport
 from support import IS_MANYCORE, wait_until
+from support.peers.programs import forked_manycore
 from support.processes.commands import manycore_command
 from support.processes.person import Person
 from support.processes.platforms import environment
@@ -83,7 +84,7 @@ def run(start, tmp_path: Path, platform: str):
         mapfile.write_text(
             f"nodes:\n  node: {{cluster: 1, core: 1, {command}, {keys}}}\n  other: {listener}\n"
         )
-        runs.append(start(manycore_command("run", mapfile)))
+        runs.append(start(forked_manycore("run", mapfile)))
         return runs[-1]
 
     yield begin
@@ -99,7 +100,7 @@ def is_heard(platform: str) -> bool:
 def test_keys_reach_a_node_that_teleoperates(run, attach, start, platform) -> None:
     running = run(TELEOP)
     running.wait_for("use the keys")
-    echo = start(manycore_command("topic", "echo", "/keys", "std_msgs/msg/String"))
+    echo = start(forked_manycore("topic", "echo", "/keys", "std_msgs/msg/String"))
     wait_until(lambda: is_heard(platform), "the echo has found the node")
     person = attach("node")
     person.sees("use the keys")  # its earlier output

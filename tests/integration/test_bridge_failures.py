@@ -21,6 +21,7 @@ from rmw_manycore_py.routes.route import DIRECTIONS, arranged
 from support import IS_MANYCORE, MAPFILES, TIMEOUT_S, wait_until
 from support.nodes.bridging import OUTSIDE, Bridge
 from support.nodes.speakers import say
+from support.peers.programs import forked_manycore
 from support.processes.commands import example_command, manycore_command
 from support.processes.domains import domain_of
 from support.processes.inspection import has_receive_threads
@@ -47,7 +48,7 @@ def started(run, node: str) -> int:
 
 
 def test_a_killed_bridge_is_started_again(start, platform) -> None:
-    run = start(manycore_command("run", TALKER_LISTENER, "--json"))
+    run = start(forked_manycore("run", TALKER_LISTENER, "--json"))
     pid = started(run, "(bridge outward)")
     listener = start(example_command("listener"), **OUTSIDE)
     listener.wait_for(HEARD)
@@ -95,7 +96,7 @@ def test_the_bridge_ends_with_the_nodes(start, tmp_path, platform) -> None:
         "nodes:\n  short: {cluster: 1, command: [python3, -c, ''], ros_arguments: false,"
         " topic_to: {chatter: std_msgs/msg/String}}\n"
     )
-    run = start(manycore_command("run", mapfile))
+    run = start(forked_manycore("run", mapfile))
     assert run.wait() == 0
     assert "manycore | stopping: all nodes have ended" in run.lines
 
@@ -123,7 +124,7 @@ def test_it_runs_on_the_cpus_of_the_mapfile(start, tmp_path, platform, named) ->
         "nodes:\n  endless: {cluster: 1, command: [sleep, '1000'], ros_arguments: false,"
         " topic_to: {chatter: std_msgs/msg/String}}\n"
     )
-    run = start(manycore_command("run", mapfile, "--json"))
+    run = start(forked_manycore("run", mapfile, "--json"))
     pid = started(run, "(bridge outward)")
     threads = {int(entry.name) for entry in Path(f"/proc/{pid}/task").iterdir()}
     cpus = {frozenset(os.sched_getaffinity(thread)) for thread in threads}
@@ -153,7 +154,7 @@ def shown(cpus: set[int]) -> HostCpu:
 
 
 def test_status_shows_the_routes(start, platform) -> None:
-    run = start(manycore_command("run", TALKER_LISTENER))
+    run = start(forked_manycore("run", TALKER_LISTENER))
     start(example_command("listener"), **OUTSIDE).wait_for(HEARD)
 
     def shown_status(*options: str) -> str:
@@ -205,7 +206,7 @@ def test_ports_in_use_are_passed_over(start, platform) -> None:
             taken = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
             with suppress(OSError):  # already in use
                 taken.bind(("", port))
-        start(manycore_command("run", TALKER_LISTENER))
+        start(forked_manycore("run", TALKER_LISTENER))
         start(example_command("listener"), **OUTSIDE).wait_for(HEARD)
 
 
@@ -214,7 +215,7 @@ def test_a_loop_is_refused(start, tmp_path, platform) -> None:
     config.write_text(
         "from_domain: 2\nto_domain: 2\ntopics: {chatter: {type: std_msgs/msg/String}}\n"
     )
-    bridge = start(manycore_command("bridge", config))
+    bridge = start(forked_manycore("bridge", config))
     assert bridge.wait() == 2
     assert "expected two different domains, found 2 on both sides" in bridge.output
 

@@ -13,7 +13,8 @@ from support import IS_MANYCORE, MAPFILES, TIMEOUT_S, wait_until
 from support.nodes.bridging import OUTSIDE
 from support.nodes.ros import announce, peer_node, spin_until, type_of
 from support.nodes.speakers import hear, qos, say
-from support.processes.commands import example_command, manycore_command
+from support.peers.programs import forked_manycore
+from support.processes.commands import example_command
 from support.processes.platforms import leftovers
 
 pytestmark = [
@@ -67,9 +68,9 @@ def show_publishers(topic: str) -> None:
 
 
 def test_the_demo_is_heard_inside_and_outside(start, platform) -> None:
-    run = start(manycore_command("run", TALKER_LISTENER))
+    run = start(forked_manycore("run", TALKER_LISTENER))
     outside = start(example_command("listener"), **OUTSIDE)
-    echo = start(manycore_command("topic", "echo", "--outside", "/chatter"))
+    echo = start(forked_manycore("topic", "echo", "--outside", "/chatter"))
     run.wait_for(rf"^listener +\| .*{HEARD}")
     outside.wait_for(HEARD)
     echo.wait_for(r"^data: '?Hello World: \d+'?$")

@@ -26,7 +26,7 @@ from support.nodes.zenoh_peers import (
     sdk_say,
     token,
 )
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 
 pytestmark = [
     pytest.mark.integration,
@@ -273,7 +273,7 @@ topics:
 def test_a_mapfile_names_the_engine(zenoh, start, tmp_path) -> None:
     mapfile = tmp_path / "zenoh.yaml"
     mapfile.write_text(MAPFILE.format(domain=zenoh.domain, connect=locator(zenoh.port)))
-    run = start(manycore_command("run", mapfile))
+    run = start(forked_manycore("run", mapfile))
     zenoh.outside(sdk_hear, "/chatter").wait_for("^heard Hello World")
     assert run.stop() == 0
 
@@ -282,7 +282,7 @@ def test_a_bridge_file_names_the_engine(zenoh, start, tmp_path) -> None:
     file = tmp_path / "zenoh.yaml"
     file.write_text(BRIDGE_FILE.format(domain=zenoh.domain, connect=locator(zenoh.port)))
     zenoh.inside(say, "/chatter", {}, 0.05).wait_for("^said$")
-    run = start(manycore_command("bridge", file, "--inside", "99"))
+    run = start(forked_manycore("bridge", file, "--inside", "99"))
     zenoh.outside(sdk_hear, "/chatter").wait_for("^heard again")
     assert run.stop() == 0
 

@@ -22,7 +22,7 @@ from rmw_manycore_py.launch.control import MAX_CLIENTS, STOP_PLACES
 from rmw_manycore_py.launch.runs.directory import RunDirectory, runs_of
 from rmw_manycore_py.launch.runs.lines import MAX_LINE_BYTES
 from support import IS_MANYCORE, TIMEOUT_S, wait_until
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 from support.processes.inspection import is_asleep
 from support.processes.program import Program
 from support.sources.advice import run_quoted
@@ -85,7 +85,7 @@ def run(start, tmp_path: Path, platform: str) -> Iterator[Program]:
     """Yield a run of two nodes, which must still be its nodes at the end of the test."""
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text(MAPFILE)
-    started = start(manycore_command("run", mapfile))
+    started = start(forked_manycore("run", mapfile))
     for node in ("stays", "typed"):
         started.wait_for(f"{node} started")
     before = pids(platform)
@@ -205,7 +205,7 @@ def random_request(chance: random.Random) -> bytes:
 def test_random_requests_do_not_end_a_run(start, tmp_path, platform) -> None:
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text(MAPFILE)
-    run = start(manycore_command("run", mapfile))
+    run = start(forked_manycore("run", mapfile))
     run.wait_for("typed started")
     chance = random.Random(38)
     for _ in range(RANDOM_REQUESTS // 10):
@@ -260,10 +260,10 @@ def test_a_run_without_room_for_a_client_is_stopped_all_the_same(start, run, pla
     with ExitStack() as stack:
         for _ in range(MAX_CLIENTS + STOP_PLACES):
             stack.enter_context(Client(platform))
-        refused = start(manycore_command("restart", "--platform", platform, "stays"))
+        refused = start(forked_manycore("restart", "--platform", platform, "stays"))
         assert refused.wait() == 1
         assert "`manycore stop` is still served" in refused.output
-        stop = start(manycore_command("stop", "--platform", platform))
+        stop = start(forked_manycore("stop", "--platform", platform))
         assert stop.wait() == 0, stop
         assert run.wait() == 0, run
 

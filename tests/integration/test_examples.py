@@ -16,7 +16,8 @@ from builtin_interfaces.msg import Time
 
 from support import IS_MANYCORE, MAPFILES, TIMEOUT_S, wait_until
 from support.nodes.ros import announce, peer_node, spin_until
-from support.processes.commands import manycore_command, peer_command
+from support.peers.programs import forked_manycore
+from support.processes.commands import peer_command
 from support.processes.program import Program
 
 pytestmark = [
@@ -71,7 +72,7 @@ class Run:
 @pytest.fixture
 def run(start, platform):
     def run(name: str | Path) -> Run:
-        return Run(start(manycore_command("run", MAPFILES / name, "--json")))
+        return Run(start(forked_manycore("run", MAPFILES / name, "--json")))
 
     return run
 

@@ -35,8 +35,8 @@ from support.nodes.speakers import (
     say_stamped,
 )
 from support.nodes.zenoh_peers import free_port, locator
+from support.peers.programs import forked_manycore
 from support.processes.background import background_runs
-from support.processes.commands import manycore_command
 from support.processes.platforms import leftovers
 from support.processes.program import Program
 
@@ -126,7 +126,7 @@ def test_a_host_that_goes_away_and_comes_back(hosts) -> None:
 
 
 def test_a_host_that_the_mapfile_lacks(hosts, start) -> None:
-    run = start(manycore_command("run", hosts.mapfile, "--host", "c"))
+    run = start(forked_manycore("run", hosts.mapfile, "--host", "c"))
     run.wait_for("--host: no host 'c' in .*; it has a, b")
 
 

@@ -12,7 +12,7 @@ from rmw_manycore_py.native._transport import Configurator, Process
 from rmw_manycore_py.platform.machine.memory_policy import policy_refusal
 from rmw_manycore_py.platform.topology import machine_clusters
 from support import IS_MANYCORE
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 from support.processes.platforms import PLATFORMS
 
 pytestmark = [
@@ -54,7 +54,7 @@ def test_a_run_on_this_machine_binds_cpus_and_memory(start, tmp_path: Path, plat
     (tmp_path / "node.py").write_text(NODE)
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text("platform: machine\nnodes:\n  here: {cluster: 1, script: node.py}\n")
-    run = start(manycore_command("run", mapfile))
+    run = start(forked_manycore("run", mapfile))
     cluster = machine_clusters()[0]
     run.wait_for(rf"runs on \[{cluster.cpus[1]}\]")
     segment = PLATFORMS / platform / "cluster-1"

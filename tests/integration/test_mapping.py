@@ -16,7 +16,6 @@ from rmw_manycore_py.mapfile import check
 from rmw_manycore_py.platform.status import status
 from support import IS_MANYCORE, wait_until
 from support.peers.programs import forked_manycore
-from support.processes.commands import manycore_command
 
 pytestmark = [
     pytest.mark.integration,
@@ -75,7 +74,7 @@ def test_nodes_take_the_memory_that_is_predicted(start, tmp_path, platform, kind
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text(text)
     predicted = {one.cluster: one.total for one in check(mapfile).memory if one.total}
-    run = start(manycore_command("run", mapfile))
+    run = start(forked_manycore("run", mapfile))
 
     def are_all_there() -> bool:
         try:
@@ -103,7 +102,7 @@ def write_pipeline(path: Path, *clusters: int) -> Path:
 
 def traced(start, mapfile: Path, trace: Path) -> list[dict[str, str]]:
     """Run a mapfile, and return the events after all nodes had talked, as rows of the CSV file."""
-    run = start(manycore_command("run", mapfile))
+    run = start(forked_manycore("run", mapfile))
     run.wait_for(HEARD)
     assert start(forked_manycore("trace", "start")).wait() == 0
     for _ in range(MESSAGES):

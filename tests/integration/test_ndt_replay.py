@@ -27,6 +27,7 @@ from rmw_manycore_py.trace.chains import Messages
 from rmw_manycore_py.trace.files import load
 from rmw_manycore_py.trace.latency import latencies
 from support import IS_MANYCORE, MAPFILES, REPOSITORY, TIMEOUT_S, wait_until
+from support.peers.programs import forked_manycore
 from support.processes.commands import manycore_command
 from support.processes.program import Program
 from support.sources.advice import quoted
@@ -48,7 +49,7 @@ PATIENTLY = ("--timeout", str(2 * TIMEOUT_S))  # while matcher and bridge start
 @pytest.fixture
 def offload(start, platform) -> Program:
     """Return the matcher on the platform, running."""
-    program = start(manycore_command("run", MAPFILES / "ndt_offload.yaml"))
+    program = start(forked_manycore("run", MAPFILES / "ndt_offload.yaml"))
     program.wait_for("ndt_scan_matcher started")
     return program
 
@@ -61,14 +62,14 @@ def replayed(start: Any, recording: Path, *options: str, status: int = 0) -> dic
     is_closed_loop = not {"stack", "lost"}.isdisjoint(options)
     pace = () if is_closed_loop else ("--wait",)
     options = ("--deadline", DEADLINE_MS, "--json", *PATIENTLY, *pace, *options)
-    replay = start(manycore_command("ndt", "replay", recording, *options))
+    replay = start(forked_manycore("ndt", "replay", recording, *options))
     assert replay.wait(LONG_S) in ({0, 1} if is_closed_loop else {status}), replay
     figures: dict[str, Any] = json.loads(replay.output[replay.output.index("{") :])
     return figures
 
 
 def test_every_scan_of_a_drive_is_answered(start, platform, street, tmp_path):
-    alone = start(manycore_command("ndt", "replay", street / "drive.npz", "--timeout", "1"))
+    alone = start(forked_manycore("ndt", "replay", street / "drive.npz", "--timeout", "1"))
     assert alone.wait(LONG_S) == 1
     assert "points_raw has no subscription: start a scan matcher" in alone.output
     assert quoted(alone.output) == ["manycore run ndt_offload"]
@@ -85,7 +86,7 @@ def test_every_scan_of_a_drive_is_answered(start, platform, street, tmp_path):
 
 def test_a_trace_shows_bridge_alignments_and_workers_in_a_chain(start, platform, street, tmp_path):
     path = tmp_path / "trace.json"
-    run = start(manycore_command("run", MAPFILES / "ndt_offload.yaml", "--trace", path))
+    run = start(forked_manycore("run", MAPFILES / "ndt_offload.yaml", "--trace", path))
     run.wait_for("ndt_scan_matcher started")
     assert replayed(start, street / "drive.npz")["answered"] == 10
     assert run.stop() == 0, run
@@ -119,7 +120,7 @@ def test_who_waits_loses_no_scan(start, offload, street):
 
 def test_figures_are_there_though_a_file_cannot_be_written(start, offload, street):
     files = ("--csv", "/dev/full", "--motion", "reference", "--wait", "--deadline", DEADLINE_MS)
-    replay = start(manycore_command("ndt", "replay", street / "drive.npz", *PATIENTLY, *files))
+    replay = start(forked_manycore("ndt", "replay", street / "drive.npz", *PATIENTLY, *files))
     assert replay.wait(LONG_S) == 1, replay
     assert "10 scans: 10 answered" in replay.output
     assert replay.lines[-1] == "manycore: /dev/full: cannot be written: No space left on device"
@@ -181,7 +182,7 @@ def check_closed_loop(rows: Path, figures: dict[str, Any]) -> None:
 @pytest.mark.long
 def test_a_whole_stack_on_the_platform(start, platform, street, tmp_path):
     """Voxel filter, pose initializer, matcher and EKF form a closed loop, without a first pose."""
-    stack = start(manycore_command("run", MAPFILES / "ndt_stack.yaml"))
+    stack = start(forked_manycore("run", MAPFILES / "ndt_stack.yaml"))
     rows = tmp_path / "scans.csv"
     drive, files = street / "drive.npz", ("--csv", str(rows))
     figures = replayed(start, drive, "--guess", "lost", "--rate", "4", *files)
@@ -203,13 +204,13 @@ def test_a_drive_with_motion_distortion_at_twice_its_rate(start, platform, tmp_p
     Also for the first scan, which the vehicle reaches at full speed.
     """
     options = ("--length", "32", "--beams", "16", "--azimuths", "360", "--distortion")
-    made = start(manycore_command("ndt", "simulate", tmp_path, *options))
+    made = start(forked_manycore("ndt", "simulate", tmp_path, *options))
     assert made.wait(LONG_S) == 0, made
     mapfile = yaml.safe_load((MAPFILES / "ndt_offload.yaml").read_text())
     parameters = {"activated": True, "sensor_points.deskew": True}
     mapfile["nodes"]["ndt_scan_matcher"]["parameters"] = parameters
     (tmp_path / "map.yaml").write_text(yaml.safe_dump(mapfile))
-    run = start(manycore_command("run", tmp_path / "map.yaml"))
+    run = start(forked_manycore("run", tmp_path / "map.yaml"))
     run.wait_for("ndt_scan_matcher started")
     more = ("--rate", "20", "--motion", "reference", "--voxel", "0")
     figures = replayed(start, tmp_path / "drive.npz", *more)
@@ -226,7 +227,7 @@ def test_no_scan_is_lost_while_maps_are_swapped(start, platform, tmp_path):
         ("simulate", tmp_path, "--length", "30"),
         ("map", drive, "-o", tiles, "--tile-size", "5", "--format", "npz"),
     ):
-        made = start(manycore_command("ndt", *arguments))
+        made = start(forked_manycore("ndt", *arguments))
         assert made.wait(LONG_S) == 0, made
     mapfile = yaml.safe_load((MAPFILES / "ndt_offload.yaml").read_text())
     mapfile["nodes"]["ndt_scan_matcher"]["parameters"] = {
@@ -237,7 +238,7 @@ def test_no_scan_is_lost_while_maps_are_swapped(start, platform, tmp_path):
         "dynamic_map_loading.update_distance": 5.0,
     }
     (tmp_path / "tiles.yaml").write_text(yaml.safe_dump(mapfile))
-    matcher = start(manycore_command("run", tmp_path / "tiles.yaml"))
+    matcher = start(forked_manycore("run", tmp_path / "tiles.yaml"))
     figures = replayed(start, drive, "--no-map", "--rate", "2")
     assert figures["answered"] == figures["scans"] == 37
     assert figures["within_share"] == 1.0
@@ -247,7 +248,7 @@ def test_no_scan_is_lost_while_maps_are_swapped(start, platform, tmp_path):
 
 def echo_of_poses(start: Any, platform: str) -> Program:
     """Return an echo of the poses, listed as a subscription: else it might miss a whole drive."""
-    echo = start(manycore_command("topic", "echo", "/ndt_pose", POSE_TYPE, "--csv"))
+    echo = start(forked_manycore("topic", "echo", "/ndt_pose", POSE_TYPE, "--csv"))
 
     def is_listed() -> bool:
         with _transport.Platform(platform) as opened:
@@ -265,16 +266,16 @@ def test_an_inward_bridge_that_stops_for_a_while(start, platform, tmp_path):
     Scans and guesses of 0.7 s reach the matcher at once. The time to recover is not tested.
     """
     size = ("--length", "225", "--beams", "16", "--azimuths", "360")
-    made = start(manycore_command("ndt", "simulate", tmp_path, *size, "--speed", "15"))
+    made = start(forked_manycore("ndt", "simulate", tmp_path, *size, "--speed", "15"))
     assert made.wait(LONG_S) == 0, made
-    run = start(manycore_command("run", MAPFILES / "ndt_offload.yaml", "--json"))
+    run = start(forked_manycore("run", MAPFILES / "ndt_offload.yaml", "--json"))
     inward = json.loads(run.wait_for(r'"started".*\(bridge inward\)').string)["pid"]
     run.wait_for('"started".*"ndt_scan_matcher"')
     poses = echo_of_poses(start, platform)
     burners = [start([sys.executable, "-c", "while True: pass"]) for _ in range(2)]
     rows = tmp_path / "scans.csv"
     options = ("--csv", rows, "--motion", "reference", *PATIENTLY)
-    replay = start(manycore_command("ndt", "replay", tmp_path / "drive.npz", *options))
+    replay = start(forked_manycore("ndt", "replay", tmp_path / "drive.npz", *options))
     for _ in range(10):
         poses.wait_for("^[0-9]")
     os.kill(inward, signal.SIGSTOP)
@@ -302,18 +303,18 @@ def test_a_killed_matcher_is_started_again_and_finds_itself(start, platform, tmp
     makes it skip do not count.
     """
     size = ("--length", "120", "--beams", "16", "--azimuths", "360")
-    made = start(manycore_command("ndt", "simulate", tmp_path, *size))
+    made = start(forked_manycore("ndt", "simulate", tmp_path, *size))
     assert made.wait(LONG_S) == 0, made
     mapfile = yaml.safe_load((MAPFILES / "ndt_respawn.yaml").read_text())
     mapfile["nodes"]["ndt_scan_matcher"]["parameters"]["last_pose_path"] = str(tmp_path / "pose")
     (tmp_path / "respawn.yaml").write_text(yaml.safe_dump(mapfile))
-    run = start(manycore_command("run", tmp_path / "respawn.yaml", "--json"))
+    run = start(forked_manycore("run", tmp_path / "respawn.yaml", "--json"))
     matcher = json.loads(run.wait_for('"started".*"ndt_scan_matcher"').string)["pid"]
     poses = echo_of_poses(start, platform)
     rows = tmp_path / "scans.csv"
     pace = ("--rate", "10", "--voxel", "0", "--deadline", "2000")
     options = ("--csv", rows, "--motion", "reference", *PATIENTLY, *pace)
-    replay = start(manycore_command("ndt", "replay", tmp_path / "drive.npz", *options))
+    replay = start(forked_manycore("ndt", "replay", tmp_path / "drive.npz", *options))
     for _ in range(20):
         poses.wait_for("^[0-9]")
     os.kill(matcher, signal.SIGKILL)
@@ -364,7 +365,7 @@ def test_a_recorded_drive_with_the_whole_stack(start, platform, tmp_path):
 
     Estimating the motion takes most of a replay's time: the test above covers it.
     """
-    stack = start(manycore_command("run", MAPFILES / "ndt_stack.yaml"))
+    stack = start(forked_manycore("run", MAPFILES / "ndt_stack.yaml"))
     rows = tmp_path / "scans.csv"
     guesses = ("--guess", "stack", "--motion", "reference", "--voxel", "0", "--csv", str(rows))
     figures = replayed(start, BALM, "--rate", "4", "--scans", "80", *guesses)

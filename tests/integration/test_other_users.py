@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import subprocess
 from collections.abc import Callable, Iterator
@@ -71,6 +72,14 @@ def give_away(directory: Path) -> None:
         os.chown(path, OTHER_USER, OTHER_USER, follow_symlinks=False)
 
 
+def exchange(one: Path, other: Path) -> None:
+    """Exchange the names of two files in one step."""
+    at_cwd, rename_exchange = -100, 2
+    libc = ctypes.CDLL(None, use_errno=True)
+    if libc.renameat2(at_cwd, os.fsencode(one), at_cwd, os.fsencode(other), rename_exchange) != 0:
+        raise OSError(ctypes.get_errno(), "cannot exchange", str(one), None, str(other))
+
+
 @pytest.mark.parametrize("kind", ["directory", "link"])
 def test_the_platform_of_another_user_is_refused(
     talker: Program, manycore: Manycore, platform: str, tmp_path: Path, kind: str
@@ -87,8 +96,8 @@ def test_the_platform_of_another_user_is_refused(
     user_directory = theirs = shm / PLATFORMS.name
     if kind == "link":
         theirs = shm / "theirs"
-        user_directory.rename(theirs)
-        user_directory.symlink_to("theirs")
+        theirs.symlink_to(theirs.name)
+        exchange(theirs, user_directory)  # at no moment are the talker's files gone
     give_away(theirs)
     files = sorted(theirs.rglob("*"))
     picture = str(tmp_path / "chip.svg")

@@ -13,7 +13,7 @@ import yaml
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.papers.reference_system.bench.text import losses_in, reports_in, values
 from support import IS_MANYCORE, MAPFILES, TIMEOUT_S, wait_until
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 from support.processes.platforms import leftovers
 from support.processes.program import Program
 from support.samples import reference_system as described
@@ -100,7 +100,7 @@ def has_heard_all_for_long(run: Program) -> bool:
 def test_24_nodes_run_for_ten_seconds_and_lose_nothing(
     start: Callable[..., Program], mapfile: Path, platform: str
 ) -> None:
-    run = start(manycore_command("run", mapfile))
+    run = start(forked_manycore("run", mapfile))
     wait_until(lambda: has_heard_all_for_long(run), "messages of all nodes", LONG_S)
     assert endpoints(platform) == (described.publishers(), described.subscriptions(), {MESSAGE})
     with _transport.Platform(platform) as view:

@@ -23,7 +23,7 @@ from rmw_manycore_py.papers.roslite.variants import (
 from rmw_manycore_py.papers.roslite.vehicle.course import Course
 from rmw_manycore_py.papers.roslite.vehicle.drive_log import DriveFigures
 from support import IS_MANYCORE, TIMEOUT_S, wait_until
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 from support.processes.platforms import leftovers
 from support.processes.program import Program
 
@@ -98,7 +98,7 @@ def test_a_vehicle_is_driven(
     start: Start, platform: str, map_path: Path, tmp_path: Path, variant: dict[str, Any]
 ) -> None:
     expected = edges_of(write(variant, tmp_path / "alone.yaml"))
-    run = start(manycore_command("run", driving(variant, map_path, tmp_path)))
+    run = start(forked_manycore("run", driving(variant, map_path, tmp_path)))
     wait_until(lambda: edges_on(platform) == expected, "all nodes", timeout_s=LONG_S)
     report = tmp_path / "drive.json"
     wait_until(report.exists, f"the report of the vehicle: {run!r}", timeout_s=LONG_S)
@@ -135,7 +135,7 @@ def test_bad_parameters_end_the_node_with_an_error(
     one = {**variant["nodes"][node]}
     one["parameters"] = {**one["parameters"], **parameters}
     variant["nodes"] = {node: one}
-    run = start(manycore_command("run", write(variant, tmp_path / "bad.yaml")))
+    run = start(forked_manycore("run", write(variant, tmp_path / "bad.yaml")))
     assert run.wait(LONG_S) == 1
     assert said in run.output
     assert "Traceback" not in run.output
@@ -146,6 +146,6 @@ def test_tiles_that_fit_no_smem_are_an_error_with_the_size(
 ) -> None:
     variant = installed(AFTER)
     variant["nodes"][SEARCH]["parameters"]["smem_bytes"] = 20_000
-    run = start(manycore_command("run", driving(variant, map_path, tmp_path)))
+    run = start(forked_manycore("run", driving(variant, map_path, tmp_path)))
     run.wait_for("expected at most smem_bytes = 20000, found", LONG_S)
     run.stop()

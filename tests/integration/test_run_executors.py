@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from support import IS_MANYCORE
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 from support.processes.platforms import environment
 
 pytestmark = [
@@ -63,7 +63,7 @@ def test_a_callback_may_wait_for_another_one(start, tmp_path: Path, platform) ->
     (tmp_path / "caller.py").write_text(CALLER)
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text("nodes:\n  caller: {cluster: 1, core: 1, script: caller.py}\n")
-    run = start(manycore_command("run", mapfile))
+    run = start(forked_manycore("run", mapfile))
     for _ in range(3):
         run.wait_for(r"^caller   \| answered on 1 CPU$")
     assert run.stop() == 0

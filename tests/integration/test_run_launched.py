@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from support import IS_MANYCORE
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 from support.processes.program import Program
 
 pytestmark = [
@@ -164,7 +164,7 @@ def test_a_container_loads_its_components_each_time_it_starts(start, container, 
     text = COMPONENTS.format(hearer="Hearer")
     nodes = "  box: {cluster: 1, core: 1}\n"
     mapfile = write(container, "demo.launch.xml", text, nodes, "{words: hello}")
-    run = start(manycore_command("run", mapfile, "--json"))
+    run = start(forked_manycore("run", mapfile, "--json"))
     for _ in range(2):
         match = run.wait_for(r'"started", "node": "box", "pid": (\d+)')
         run.wait_for(r'"\(components of box\)", "line": "loaded /speaker into /left/box"')
@@ -179,7 +179,7 @@ def test_a_component_that_is_not_loaded_fails_the_run(start, container, platform
     text = COMPONENTS.format(hearer="Absent")
     nodes = "  box: {cluster: 1, core: 1}\n"
     mapfile = write(container, "demo.launch.xml", text, nodes, "{words: hello}")
-    run = start(manycore_command("run", mapfile))
+    run = start(forked_manycore("run", mapfile))
     run.wait_for(r"hearer was not loaded into /left/box: no such plugin$")
     run.wait_for(r"^manycore \| \(components of box\) failed: exit status 1$")
     assert run.stop() == 1
@@ -189,7 +189,7 @@ def test_a_lifecycle_node_is_configured_and_activated(start, container, platform
     program = container / "prefix/lib/demo/container"
     program.write_text(MANAGED.format(python=sys.executable))
     nodes = "  arm: {cluster: 1, core: 1}\n"
-    run = start(manycore_command("run", write(container, "demo.launch.py", AUTOSTART, nodes)))
+    run = start(forked_manycore("run", write(container, "demo.launch.py", AUTOSTART, nodes)))
     for transition in (1, 3):
         run.wait_for(rf"^\(states of arm\) \| /left/arm made transition {transition}$")
     assert run.stop() == 0
@@ -197,7 +197,7 @@ def test_a_lifecycle_node_is_configured_and_activated(start, container, platform
 
 def test_what_waits_for_a_process_starts_and_ends_with_it(start, tmp_path, platform) -> None:
     nodes = "".join(f"  {name}: {{cluster: 1, core: 1}}\n" for name in ("stays", "last", "again"))
-    run = start(manycore_command("run", write(tmp_path, "demo.launch.py", ORDER, nodes), "--json"))
+    run = start(forked_manycore("run", write(tmp_path, "demo.launch.py", ORDER, nodes), "--json"))
     assert run.wait() == 0
     order = [event["node"] for event in events(run, "started")]
     assert order[0] == "again"

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from support import IS_MANYCORE, TIMEOUT_S
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 
 pytestmark = [
     pytest.mark.integration,
@@ -94,7 +94,7 @@ def run_listener(start, directory: Path, code: str, *keys: str):
         "nodes:\n  talker: {cluster: 1, core: 1, script: talker.py}\n"
         f"  listener: {{cluster: 2, core: 1, script: listener.py{more}}}\n"
     )
-    return start(manycore_command("run", mapfile))
+    return start(forked_manycore("run", mapfile))
 
 
 def test_per_topic_serves_each_topic_beside_the_others(start, tmp_path, platform) -> None:

@@ -15,6 +15,7 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from rmw_manycore_py.native import _transport
 from rmw_manycore_py.process.scheduling import Scheduling, refusal
 from support import IS_MANYCORE
+from support.peers.programs import forked_manycore
 from support.processes.commands import manycore_command
 
 pytestmark = [
@@ -66,7 +67,7 @@ def test_each_node_has_its_policy_and_the_runner_keeps_its_own(start, tmp_path, 
         third={"policy": "rr", "priority": 2},
         fourth={"policy": "other"},
     )
-    run = start(manycore_command("run", mapfile))
+    run = start(forked_manycore("run", mapfile))
     assert run.wait() == 0
     shown = {line for line in run.lines if " | " in line and not line.startswith("manycore")}
     assert shown == {
@@ -89,7 +90,7 @@ def test_a_receive_thread_is_more_urgent_than_the_nodes_of_its_cluster(
         node["cluster"] = cluster
         node["command"] = [sys.executable, "-c", JOIN_AND_WAIT]
     mapfile.write_text(json.dumps({"nodes": nodes}))
-    run = start(manycore_command("run", mapfile))
+    run = start(forked_manycore("run", mapfile))
     for _ in nodes:
         run.wait_for("joined")
     with _transport.Platform(platform) as view:

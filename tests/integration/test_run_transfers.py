@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from support import IS_MANYCORE
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 from support.processes.platforms import leftovers
 
 pytestmark = [
@@ -50,10 +50,10 @@ def write_mapfile(directory: Path, transfer: str) -> Path:
 @pytest.mark.parametrize("transfer", TRANSFERS)
 def test_unmodified_nodes_talk(start, tmp_path, platform, transfer: str) -> None:
     trace = tmp_path / "trace.json"
-    run = start(manycore_command("run", write_mapfile(tmp_path, transfer), "--trace", trace))
+    run = start(forked_manycore("run", write_mapfile(tmp_path, transfer), "--trace", trace))
     for _ in range(3):
         run.wait_for(r"^listener \| .*I heard: 'Hello World")
-    status = start(manycore_command("status", "--platform", platform))
+    status = start(forked_manycore("status", "--platform", platform))
     assert status.wait() == 0
     assert f"/chatter: transfer {TRANSFERS[transfer]}" in status.lines
     # The end may also meet a talker that is ending because a message has not arrived in time.
@@ -77,14 +77,14 @@ def traced(trace: Path, name: str) -> list[tuple[int, int]]:
 
 def test_the_mapfile_is_shown_and_written_out_with_its_transfers(start, tmp_path, platform) -> None:
     mapfile = write_mapfile(tmp_path, "transfer: message, priority: 7")
-    show = start(manycore_command("map", "show", mapfile, "--json"))
+    show = start(forked_manycore("map", "show", mapfile, "--json"))
     assert show.wait() == 0
     topic = json.loads(show.output)["topics"][0]
     assert (topic["transfer"], topic["priority"], topic["synchronous"]) == ("message", 7, False)
-    table = start(manycore_command("map", "show", mapfile))
+    table = start(forked_manycore("map", "show", mapfile))
     assert table.wait() == 0
     assert "message, priority 7" in table.output
-    create = start(manycore_command("create", mapfile, "-o", tmp_path / "out"))
+    create = start(forked_manycore("create", mapfile, "-o", tmp_path / "out"))
     assert create.wait() == 0
     written = (tmp_path / "out" / "topic_table.yaml").read_text()
     assert "transfer: message, priority 7" in written

@@ -93,7 +93,7 @@ def check_drawn(path) -> None:
 
 def test_a_run_is_traced_from_beginning_to_end(start, tmp_path) -> None:
     path = tmp_path / "trace.json"
-    run = start(manycore_command("run", MAPFILES / "talker_listener.yaml", "--trace", path))
+    run = start(forked_manycore("run", MAPFILES / "talker_listener.yaml", "--trace", path))
     for _ in range(3):
         run.wait_for("I heard")
     assert run.stop() == 0, run
@@ -114,7 +114,7 @@ def test_a_run_is_not_started_if_its_trace_cannot_be_written(start, platform) ->
         ("run", mapfile, "--trace", "/sys/trace.json"),
         ("profile", "record", mapfile, "-o", "/sys/profile.json"),
     ):
-        refused = start(manycore_command(*words))
+        refused = start(forked_manycore(*words))
         assert refused.wait() == EXIT_BAD_INPUT, refused
         assert re.search(r"/sys/\w+\.json: cannot be written: ", refused.output), refused
         assert "talker" not in refused.output, refused
@@ -164,7 +164,7 @@ def test_killed_nodes_and_receive_threads_leave_their_events(
     hear(talking)
     talker.signal(signal.SIGKILL)
     talker.wait()
-    second = start(manycore_command(*SECOND, "data: second"))
+    second = start(forked_manycore(*SECOND, "data: second"))
     for _ in range(2):
         listener.wait_for("I heard: 'second'")
     status = json.loads(manycore("trace", "status", "--json"))

@@ -12,8 +12,7 @@ from rmw_manycore_py.picture.drawing import draw
 from rmw_manycore_py.picture.layout import lay_out
 from rmw_manycore_py.trace.files import load
 from support import IS_MANYCORE, wait_until
-from support.peers.programs import forked_example
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_example, forked_manycore
 from support.samples.mappings import mapping
 
 pytestmark = [
@@ -150,7 +149,7 @@ def test_a_node_of_a_run_is_restarted_and_moved(view, browser, start, tmp_path) 
     mapfile.write_text(
         "nodes:\n  talker: {cluster: 1, module: rmw_manycore_py.examples.talker, core: 1}\n"
     )
-    run = start(manycore_command("run", mapfile))
+    run = start(forked_manycore("run", mapfile))
     browser.open(view[1])
     browser.click("[data-node='/talker']")
     browser.wait_for_text("#details-facts", "cluster 1, core 1")

@@ -11,7 +11,7 @@ import pytest
 from rmw_manycore_py.recording.recording import Recording
 from support import IS_MANYCORE, wait_until
 from support.nodes import timed
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 
 pytestmark = [
     pytest.mark.integration,
@@ -27,16 +27,16 @@ def test_tools_show_virtual_time_and_do_not_disturb_it(
     start, manycore, timed_mapfile, tmp_path: Path
 ) -> None:
     run = start(
-        manycore_command("run", timed_mapfile(timed, "talker", "echo"), "--virtual", "--instant")
+        forked_manycore("run", timed_mapfile(timed, "talker", "echo"), "--virtual", "--instant")
     )
     run.wait_for("echo 1 ")
     manycore("pause")
     looks = [json.loads(manycore("top", "--count", "1", "--json"))["virtual_s"] for _ in range(2)]
     assert looks[0] == looks[1] > 0.07
     bag = tmp_path / "bag.mcap"
-    recorder = start(manycore_command("topic", "record", "/chatter", "-o", bag))
+    recorder = start(forked_manycore("topic", "record", "/chatter", "-o", bag))
     recorder.wait_for("^recording /chatter")
-    rate = start(manycore_command("topic", "hz", "/chatter", "--json"))
+    rate = start(forked_manycore("topic", "hz", "/chatter", "--json"))
     wait_until(lambda: "count: 3" in manycore("topic", "info", "/chatter"), "tools listen")
     for _ in range(3):
         manycore("step", "--for", "0.5")

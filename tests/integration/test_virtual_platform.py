@@ -22,7 +22,7 @@ from rmw_manycore_py.trace.events import Kind
 from rmw_manycore_py.trace.files import load
 from support import IS_MANYCORE
 from support.nodes import timed
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 from support.samples.profiles import pipeline
 
 pytestmark = [
@@ -54,7 +54,7 @@ def test_a_chain_takes_the_simulated_time(case: str, tmp_path: Path, start) -> N
     parameters = f"{{speed: {{value: {speed}, source: chosen}}}}"
     platform.write_text(f"base: coolidge\nparameters: {parameters}")
     model = ("--profile", profile, "--platform", platform)
-    run = start(manycore_command("run", mapfile, "--virtual", *model, "--duration", "2", "--json"))
+    run = start(forked_manycore("run", mapfile, "--virtual", *model, "--duration", "2", "--json"))
     run.wait_for(r'"event": "finished"')
     assert run.wait() == 0
     events = map(json.loads, run.output.splitlines())
@@ -123,7 +123,7 @@ def test_timers_of_native_nodes_are_not_late(tmp_path: Path, manycore) -> None:
 def test_time_stands_and_goes_on_when_asked(tmp_path: Path, start, manycore) -> None:
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text(MAPFILE.format(node=f"{sys.executable}, {timed.__file__}", cluster=1))
-    run = start(manycore_command("run", mapfile, "--virtual", "--instant"))
+    run = start(forked_manycore("run", mapfile, "--virtual", "--instant"))
     run.wait_for("sink.*0.0")
     assert "s: paused" in manycore("pause")
 
@@ -150,12 +150,12 @@ def test_time_stands_when_the_client_of_a_step_leaves(
 ) -> None:
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text(MAPFILE.format(node=f"{sys.executable}, {timed.__file__}", cluster=1))
-    run = start(manycore_command("run", mapfile, "--virtual", "--instant"))
+    run = start(forked_manycore("run", mapfile, "--virtual", "--instant"))
     run.wait_for("sink.*0.0")
     manycore("pause")
     run.wait_for("time stands at .*: paused")
     run.skip_output()
-    client = start(manycore_command("step", *step))
+    client = start(forked_manycore("step", *step))
     run.wait_for("sink.*0.0")
     client.signal(number)
     client.wait()

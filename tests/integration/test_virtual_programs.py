@@ -10,7 +10,7 @@ import pytest
 
 from support import IS_MANYCORE
 from support.nodes import timed_programs
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 
 pytestmark = [
     pytest.mark.integration,
@@ -75,7 +75,7 @@ def test_the_path_of_the_environment_has_spaces(start, timed_mapfile, tmp_path: 
 
 def test_too_many_threads_are_named(start, timed_mapfile) -> None:
     file = timed_mapfile(timed_programs, "crowd")
-    crowded = start(manycore_command("run", file, "--virtual", "--instant"))
+    crowded = start(forked_manycore("run", file, "--virtual", "--instant"))
     crowded.wait_for("crowd has one thread too many: 2048 may wait at a time")
     assert crowded.wait() == 1
 

@@ -16,7 +16,7 @@ import pytest
 
 from support import IS_MANYCORE
 from support.nodes import timed
-from support.processes.commands import manycore_command
+from support.peers.programs import forked_manycore
 from support.samples.recordings import write_texts
 
 pytestmark = [
@@ -82,7 +82,7 @@ def test_the_same_run_again_beside_load_and_on_one_cpu(mapfile, log_of) -> None:
 @pytest.mark.parametrize("duration", ["1e9", "inf"])
 def test_time_may_have_no_end(mapfile, start, duration) -> None:
     words = ("--virtual", "--instant", "--duration", duration)
-    run = start(manycore_command("run", mapfile("talker", "echo"), *words))
+    run = start(forked_manycore("run", mapfile("talker", "echo"), *words))
     run.wait_for("heard talker 30 ")
     assert run.stop() == 0, run
 

@@ -20,7 +20,7 @@ from support.processes.platforms import leftovers
 # What a node and most tests use, and what rclpy imports only for the first node.
 MODULES = (
     *("numpy", "support.nodes.payload", "rclpy.action", "support.nodes.ros", "rosidl_generator_py"),
-    *("rmw_manycore_py.cli.main", "rich.console", "rich.table", "yaml"),
+    *("rmw_manycore_py.cli.main", "rmw_manycore_py.cli.run", "rich.console", "rich.table", "yaml"),
     *("rmw_manycore_py.cli.topic.echo", "rmw_manycore_py.ndt.nodes.ndt_scan_matcher"),
     *("rmw_manycore_bridge.process", "rmw_manycore_bridge.fastdds.outside"),
 )
