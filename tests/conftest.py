@@ -7,6 +7,7 @@ import importlib.util
 import os
 import shutil
 import signal
+import sys
 import tempfile
 from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
@@ -35,8 +36,9 @@ def pytest_configure(config: pytest.Config) -> None:
     # tests start would inherit that.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
-    # Each program that a test starts would compile again all that it imports.
+    # Each worker, and each program that a test starts, would compile again all that it imports.
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    sys.dont_write_bytecode = False
     # The wheels of rosidl bring an old parser, which uses deprecated modules.
     config.addinivalue_line("filterwarnings", "ignore:module 'sre_:DeprecationWarning")
     if is_inside():
