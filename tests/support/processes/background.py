@@ -21,12 +21,16 @@ def background_runs(
 ) -> Iterator[Callable[..., Program]]:
     """Yield a function that runs `manycore`, checks its status and returns the program.
 
-    What goes on in the background is started as users start it.
+    What goes on in the background is started as users start it; what changes a run is forked.
     """
 
+    def begins(words: tuple[str | Path, ...]) -> bool:
+        if words[0] != "up":
+            return False
+        return "--join" in words or not any(run.is_alive for run in runs_of(platform))
+
     def call(*words: str | Path, status: int = 0) -> Program:
-        command = manycore_command if words[0] == "up" else forked_manycore
-        program = start(command(*words))
+        program = start((manycore_command if begins(words) else forked_manycore)(*words))
         assert program.wait() == status, program
         return program
 
