@@ -47,9 +47,10 @@ class Parted:
 
     def run(self, host: str, **env: str) -> Program:
         """Start the part of a host."""
-        command = map(str, manycore_command("run", self.mapfile, "--host", host))
-        words = [*self._prefixes.get(host, ()), *command]
-        return self._start(words, MANYCORE_PLATFORM=self.platforms[host], **env)
+        prefix = self._prefixes.get(host, [])
+        command = manycore_command if prefix or env else forked_manycore
+        words = map(str, command("run", self.mapfile, "--host", host))
+        return self._start([*prefix, *words], MANYCORE_PLATFORM=self.platforms[host], **env)
 
     def run_all(self, **env: str) -> dict[str, Program]:
         """Start all parts, and return once the listeners hear the talker."""
