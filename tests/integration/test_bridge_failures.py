@@ -21,8 +21,8 @@ from rmw_manycore_py.routes.route import DIRECTIONS, arranged
 from support import IS_MANYCORE, MAPFILES, TIMEOUT_S, wait_until
 from support.nodes.bridging import OUTSIDE, Bridge
 from support.nodes.speakers import say
-from support.peers.programs import forked_manycore
-from support.processes.commands import example_command, manycore_command
+from support.peers.programs import forked_example, forked_manycore
+from support.processes.commands import manycore_command
 from support.processes.domains import domain_of
 from support.processes.inspection import has_receive_threads
 from support.processes.platforms import environment, leftovers, unique_platform
@@ -50,7 +50,7 @@ def started(run, node: str) -> int:
 def test_a_killed_bridge_is_started_again(start, platform) -> None:
     run = start(forked_manycore("run", TALKER_LISTENER, "--json"))
     pid = started(run, "(bridge outward)")
-    listener = start(example_command("listener"), **OUTSIDE)
+    listener = start(forked_example("listener"), **OUTSIDE)
     listener.wait_for(HEARD)
     os.kill(pid, signal.SIGKILL)
     assert started(run, "(bridge outward)") != pid
@@ -155,7 +155,7 @@ def shown(cpus: set[int]) -> HostCpu:
 
 def test_status_shows_the_routes(start, platform) -> None:
     run = start(forked_manycore("run", TALKER_LISTENER))
-    start(example_command("listener"), **OUTSIDE).wait_for(HEARD)
+    start(forked_example("listener"), **OUTSIDE).wait_for(HEARD)
 
     def shown_status(*options: str) -> str:
         command = [str(word) for word in manycore_command("bridge", "status", *options)]
@@ -194,8 +194,8 @@ def test_a_bridge_file_of_domain_bridge(start, tmp_path, platform) -> None:
     bridge = start(command)
     bridge.wait_for(r"\(bridge inward\) started")
     bridge.wait_for(r"\(bridge inward\) \| .*no_such_msgs")
-    start(example_command("talker"), **OUTSIDE)
-    start(example_command("listener", "--ros-args", "-r", "chatter:=news")).wait_for(HEARD)
+    start(forked_example("talker"), **OUTSIDE)
+    start(forked_example("listener", "--ros-args", "-r", "chatter:=news")).wait_for(HEARD)
 
 
 def test_ports_in_use_are_passed_over(start, platform) -> None:
@@ -207,7 +207,7 @@ def test_ports_in_use_are_passed_over(start, platform) -> None:
             with suppress(OSError):  # already in use
                 taken.bind(("", port))
         start(forked_manycore("run", TALKER_LISTENER))
-        start(example_command("listener"), **OUTSIDE).wait_for(HEARD)
+        start(forked_example("listener"), **OUTSIDE).wait_for(HEARD)
 
 
 def test_a_loop_is_refused(start, tmp_path, platform) -> None:
@@ -244,9 +244,7 @@ def test_two_platforms_meet_outside_only(start, platform, bridge) -> None:
     )
     second.domain = bridge.domain
     second.run(second.route("inward", "/chatter"))
-    start(example_command("talker"))
-    start(example_command("listener"), MANYCORE_PLATFORM=other, ROS_DOMAIN_ID=domain).wait_for(
-        HEARD
-    )
+    start(forked_example("talker"))
+    start(forked_example("listener"), MANYCORE_PLATFORM=other, ROS_DOMAIN_ID=domain).wait_for(HEARD)
     wait_until(lambda: second.row("inward", "/chatter")["messages"], "it came through two bridges")
     assert bridge.row("outward", "/chatter")["own"] == 0

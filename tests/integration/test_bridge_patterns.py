@@ -15,8 +15,7 @@ from support import IS_MANYCORE, wait_until
 from support.nodes.bridging import OUTSIDE, STRING, Bridge
 from support.nodes.ros import announce, peer_node, spin_until, type_of
 from support.nodes.speakers import hear, say
-from support.peers.programs import forked_manycore
-from support.processes.commands import example_command
+from support.peers.programs import forked_example, forked_manycore
 from support.processes.domains import domain_of
 
 pytestmark = [
@@ -198,7 +197,7 @@ def test_a_mapfile_names_a_pattern(start, tmp_path, platform) -> None:
         "  talker: {package: rmw_manycore, executable: talker, cluster: 1, topic_to: {chat*: }}\n"
     )
     run = start(forked_manycore("run", mapfile))
-    start(example_command("listener"), **OUTSIDE).wait_for("I heard: 'Hello World")
+    start(forked_example("listener"), **OUTSIDE).wait_for("I heard: 'Hello World")
     assert run.stop() == 0
 
 
@@ -207,6 +206,6 @@ def test_a_bridge_file_names_a_pattern(start, tmp_path, platform) -> None:
     config = tmp_path / "bridge.yaml"
     config.write_text(f"from_domain: {domain + 1}\nto_domain: {domain}\ntopics: {{chat*: }}\n")
     bridge = start(forked_manycore("bridge", config, "--inside", str(domain + 1)))
-    start(example_command("talker"))
-    start(example_command("listener"), **OUTSIDE).wait_for("I heard: 'Hello World")
+    start(forked_example("talker"))
+    start(forked_example("listener"), **OUTSIDE).wait_for("I heard: 'Hello World")
     assert bridge.stop() == 0

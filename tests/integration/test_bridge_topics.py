@@ -13,8 +13,7 @@ from support import IS_MANYCORE, MAPFILES, TIMEOUT_S, wait_until
 from support.nodes.bridging import OUTSIDE
 from support.nodes.ros import announce, peer_node, spin_until, type_of
 from support.nodes.speakers import hear, qos, say
-from support.peers.programs import forked_manycore
-from support.processes.commands import example_command
+from support.peers.programs import forked_example, forked_manycore
 from support.processes.platforms import leftovers
 
 pytestmark = [
@@ -69,7 +68,7 @@ def show_publishers(topic: str) -> None:
 
 def test_the_demo_is_heard_inside_and_outside(start, platform) -> None:
     run = start(forked_manycore("run", TALKER_LISTENER))
-    outside = start(example_command("listener"), **OUTSIDE)
+    outside = start(forked_example("listener"), **OUTSIDE)
     echo = start(forked_manycore("topic", "echo", "--outside", "/chatter"))
     run.wait_for(rf"^listener +\| .*{HEARD}")
     outside.wait_for(HEARD)

@@ -15,7 +15,8 @@ import pytest
 import yaml
 
 from support import IS_MANYCORE, MAPFILES
-from support.processes.commands import example_command, manycore_command
+from support.peers.programs import forked_example
+from support.processes.commands import manycore_command
 from support.processes.platforms import PLATFORMS
 
 pytestmark = [
@@ -109,7 +110,7 @@ def test_a_running_platform(start, platform, report, tmp_path):
 
 def test_a_damaged_platform_hides_no_other(start, platform, report):
     damaged = PLATFORMS / f"{platform}-damaged"
-    start(example_command("talker")).wait_for("Publishing")
+    start(forked_example("talker")).wait_for("Publishing")
     damaged.mkdir(mode=0o700)
     try:
         (damaged / "alive").touch(mode=0o600)

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from support import IS_MANYCORE, TIMEOUT_S
-from support.processes.commands import example_command, manycore_command
+from support.peers.programs import forked_example
+from support.processes.commands import manycore_command
 from support.processes.platforms import environment
 
 pytestmark = [
@@ -86,7 +87,7 @@ def test_a_full_disk_is_named(platform: str, words: tuple[str, ...]) -> None:
 
 
 def test_a_full_disk_is_named_by_verbs_that_join(start, platform: str) -> None:
-    start(example_command("talker")).wait_for("Publishing")
+    start(forked_example("talker")).wait_for("Publishing")
     for words in LOOKING:
         said = last_line(platform, words, Path("/dev/full"))
         assert said == "manycore: the output cannot be written: No space left on device", words

@@ -15,8 +15,8 @@ import yaml
 from rmw_manycore_py.ros.parameter_files import read_file
 from support import IS_MANYCORE
 from support.nodes.ros import announce, peer_node
-from support.peers.programs import forked_manycore
-from support.processes.commands import example_command, peer_command
+from support.peers.programs import forked_example, forked_manycore
+from support.processes.commands import peer_command
 from support.processes.program import Program
 
 pytestmark = [
@@ -28,7 +28,7 @@ SLOW = ("--ros-args", "-p", "rate_hz:=0.001")
 
 
 def test_services_are_listed_and_called(start, manycore) -> None:
-    start(example_command("lamp"), 2).skip_output()
+    start(forked_example("lamp"), 2).skip_output()
     called = manycore("service", "call", "/switch_lamp", "std_srvs/srv/SetBool", "{data: true}")
     assert called.splitlines()[-4:] == [
         "requester: making request: std_srvs.srv.SetBool_Request(data=True)",
@@ -243,7 +243,7 @@ def test_actions_are_listed(start, manycore) -> None:
 
 
 def test_an_interrupt_cancels_a_goal(start) -> None:
-    start(example_command("fibonacci_server", *SLOW), 2)
+    start(forked_example("fibonacci_server", *SLOW), 2)
     goal = ("/fibonacci", "test_msgs/action/Fibonacci", "{order: 3}")
     sender = start(forked_manycore("action", "send_goal", *goal))
     sender.wait_for("Goal accepted")
