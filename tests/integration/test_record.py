@@ -22,7 +22,7 @@ from support.nodes.bridging import OUTSIDE
 from support.nodes.ros import announce, peer_node, spin_until, type_of
 from support.nodes.speakers import hear, qos, say
 from support.peers.programs import forked_manycore
-from support.processes.commands import manycore_command, peer_command
+from support.processes.commands import peer_command
 from support.processes.platforms import leftovers
 from support.samples.recordings import text_in, write_texts
 
@@ -51,7 +51,7 @@ def options(place: dict[str, str]) -> list[str]:
 
 
 def record_command(path: Path, *words: str) -> list[Any]:
-    return manycore_command("topic", "record", "-o", path, *words)
+    return forked_manycore("topic", "record", "-o", path, *words)
 
 
 def test_other_readers_read_what_was_recorded(start, tmp_path, place) -> None:

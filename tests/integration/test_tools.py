@@ -13,7 +13,8 @@ from typing import Any
 import pytest
 
 from support import IS_MANYCORE, MAPFILES, wait_until
-from support.processes.commands import example_command, manycore_command
+from support.peers.programs import forked_example, forked_manycore
+from support.processes.commands import manycore_command
 from support.processes.inspection import kill_all
 from support.processes.platforms import PLATFORMS, environment, leftovers
 
@@ -25,7 +26,7 @@ pytestmark = [
 
 @pytest.fixture
 def running(start, platform):
-    run = start(manycore_command("run", MAPFILES / "talker_listener.yaml", "--json"))
+    run = start(forked_manycore("run", MAPFILES / "talker_listener.yaml", "--json"))
     run.wait_for("I heard")
     yield run
     assert run.stop() == 0
@@ -114,14 +115,14 @@ def test_lists_take_what_those_of_ros2_take(running, manycore) -> None:
 def test_echo_waits_for_a_topic_whose_type_is_given(start, platform) -> None:
     echo = start(manycore_command("topic", "echo", "--once", "/chatter", "std_msgs/msg/String"))
     wait_until(lambda: leftovers(platform), "echo has made the platform")
-    talker = start([sys.executable, "-m", "rmw_manycore_py.examples.talker"])
+    talker = start(forked_example("talker"))
     assert echo.wait() == 0
     assert "data: 'Hello World" in echo.output
     assert talker.stop_node()
 
 
 def test_the_rate_is_printed_as_ros2_does(running, start) -> None:
-    hz = start(manycore_command("topic", "hz", "/chatter"))
+    hz = start(forked_manycore("topic", "hz", "/chatter"))
     hz.wait_for(r"^average rate: \d+\.\d{3}$")
     hz.wait_for(r"^\tmin: \d+\.\d{3}s max: \d+\.\d{3}s std dev: \d+\.\d{5}s window: \d+$")
     assert hz.stop() == 0
@@ -150,7 +151,7 @@ def test_a_living_platform_is_not_cleaned(running, manycore, platform) -> None:
 
 def test_a_dead_platform_is_seen_and_cleaned(start, manycore, platform) -> None:
     directory = PLATFORMS / platform
-    start(example_command("talker")).wait_for("Publishing")
+    start(forked_example("talker")).wait_for("Publishing")
     kill_all(platform)
     (directory / "registry").write_bytes(bytes(4096))
     assert f"platform {platform}: " in manycore("status")

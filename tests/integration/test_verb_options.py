@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import json
-import sys
 from contextlib import suppress
 
 import pytest
 
 from support import IS_MANYCORE
 from support.nodes.ros import announce, peer_node
-from support.peers.programs import forked_manycore
+from support.peers.programs import forked_example, forked_manycore
 from support.processes.commands import manycore_command, peer_command
 
 pytestmark = [
@@ -261,7 +260,7 @@ def test_lifecycles_with_the_options_of_ros2(start, manycore) -> None:
 
 
 def test_a_goal_from_standard_input(start, manycore) -> None:
-    start([sys.executable, "-m", "rmw_manycore_py.examples.fibonacci_server"])
+    start(forked_example("fibonacci_server"))
     goal = ("action", "send_goal", "--stdin", "/fibonacci", "test_msgs/action/Fibonacci")
     assert "     order: 2\n" in manycore(*goal, text="order: 2")
     assert "are mutually exclusive" in manycore(*goal, "{order: 1}", status=2, text="")

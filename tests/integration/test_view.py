@@ -186,7 +186,7 @@ def test_a_death_differs_from_a_leave(talking, platform, start) -> None:
     assert len(deaths) == 1
     assert [member.pid for member in looks[-1].dead] == [talker.pid]  # in the same look
     # A new interpreter: a fork ends without the interpreter's clean-up and would not leave.
-    again = start([sys.executable, "-m", "rmw_manycore_py.examples.talker"])
+    again = start(forked_example("talker"))
     wait_until(lambda: not watch.look().dead, "it runs again")
     again.wait_for("Publishing")
     assert again.stop_node()
