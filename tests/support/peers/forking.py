@@ -23,6 +23,7 @@ MODULES = (
     *("rmw_manycore_py.cli.main", "rmw_manycore_py.cli.run", "rich.console", "rich.table", "yaml"),
     *("rmw_manycore_py.cli.topic.echo", "rmw_manycore_py.ndt.nodes.ndt_scan_matcher"),
     *("rmw_manycore_bridge.process", "rmw_manycore_bridge.fastdds.outside"),
+    "rmw_manycore_py.view.server",
 )
 MESSAGES = (
     "rcl_interfaces.msg",
