@@ -138,6 +138,16 @@ class Alignment:
         """Return the likelihood, reduced for points outside the map; for comparing places."""
         return self.nearest_voxel_likelihood * self.share_in_map
 
+    def scored(self, score: Score, points: int) -> Alignment:
+        """Return this alignment with the score of more points than it was found with."""
+        return replace(
+            self,
+            score=score.score,
+            transform_probability=score.transform_probability,
+            nearest_voxel_likelihood=score.nearest_voxel_likelihood,
+            share_in_map=score.points_in_map / max(points, 1),
+        )
+
     def continued_from(self, start: Alignment) -> Alignment:
         """Return this alignment with the steps of the one whose result it began at."""
         path = np.concatenate([start.path, self.path[1:]])

@@ -13,10 +13,14 @@ ends. So points are classified:
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+import numpy.typing as npt
 
 from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Pose, ScanPoints
+from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
 # Minimum explained score of a convincing result, as a share of the map's own score. In the worlds
 # of `manycore bench ndt --only trust` 96 % of the right poses have more. So has one of the wrong
@@ -29,25 +33,47 @@ ABOVE_GROUND_M = 1.2  # the ground fits anywhere: it does not make up for contra
 MIN_COLUMNS_AROUND = 6  # of eight; a column at a straight edge has five
 MIN_SUPPORT = 0.03  # minimum share of points above ground that fit
 
+Mask = npt.NDArray[np.bool_]
 
-def explained_score(evidence: Matrix, own_score: float) -> float:
-    """Return the score of the rest, reduced by contradictions; at most comparable to `own_score`.
 
-    :param evidence: (N, 4) of `_ndt.VoxelMap.point_evidence`.
-    :param own_score: of the map's own points.
+@dataclass(frozen=True)
+class Evidence:
+    """What the map says about N points.
+
+    :param score: (N,) of the best voxel around each point; 0 without one.
+    :param height_m: (N,) above the lowest voxel of the column.
+    :param fits: (N,) whether a point is at something in the map.
+    :param is_past: (N,) whether it lies behind a surface.
+    :param rest: (N,) whether it is neither unknown nor foreign.
     """
-    score, height_m, around, is_past = np.nan_to_num(evidence).T
-    fits = score >= FITS * own_score
-    known = ~np.isnan(evidence[:, 1]) & (fits | (around >= MIN_COLUMNS_AROUND))
-    is_past = is_past > 0.0
-    stands = (height_m > 0.0) & (height_m < MAX_FOREIGN_M)
-    foreign = known & ~fits & ~is_past & stands
-    rest = known & ~foreign
-    supporting = int((known & fits & (height_m > ABOVE_GROUND_M)).sum())
-    if supporting < MIN_SUPPORT * len(evidence):
-        return 0.0
-    contradicting = int((rest & ~fits & ~is_past).sum() + is_past.sum())
-    return float(score[rest].mean()) * supporting / (supporting + contradicting)
+
+    score: Matrix
+    height_m: Matrix
+    fits: Mask
+    is_past: Mask
+    rest: Mask
+
+    @classmethod
+    def of(
+        cls, voxel_map: VoxelMap, scan: ScanPoints, T_map_sensor: Pose, outlier_ratio: float
+    ) -> Evidence:
+        """Classify the points of a scan (N, 3) [m, sensor frame] at a pose (4, 4)."""
+        found = voxel_map.finest.point_evidence(scan, T_map_sensor, outlier_ratio)
+        score, height_m, around, past = np.nan_to_num(found.astype(np.float64)).T
+        fits = score >= FITS * voxel_map.own_likelihood
+        is_past = past > 0.0
+        known = ~np.isnan(found[:, 1]) & (fits | (around >= MIN_COLUMNS_AROUND))
+        stands = (height_m > 0.0) & (height_m < MAX_FOREIGN_M)
+        return cls(score, height_m, fits, is_past, known & (fits | is_past | ~stands))
+
+    def explained_score(self) -> float:
+        """Return the score of the rest, reduced by contradictions, to compare with a map's own."""
+        supporting = int((self.rest & self.fits & (self.height_m > ABOVE_GROUND_M)).sum())
+        if supporting < MIN_SUPPORT * len(self.score):
+            return 0.0
+        contradicting = int((self.rest & ~self.fits & ~self.is_past).sum() + self.is_past.sum())
+        mean = float(self.score[self.rest].mean())
+        return mean * supporting / (supporting + contradicting)
 
 
 def known_points(voxel_map: _ndt.VoxelMap, scan: ScanPoints, T_map_sensor: Pose) -> ScanPoints:

@@ -18,12 +18,8 @@ from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Pose, pose_error, pose_matrix, scan_points
 from rmw_manycore_py.ndt.matching import covariance
 from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
-from rmw_manycore_py.ndt.matching.evidence import (
-    EXPLAINED_SHARE,
-    SAMPLE,
-    explained_score,
-    known_points,
-)
+from rmw_manycore_py.ndt.matching.closer_look import closer_looks
+from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE, SAMPLE, Evidence
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.level import levelled
 from rmw_manycore_py.ndt.matching.native_matcher import NativeMatcher
@@ -36,7 +32,6 @@ from rmw_manycore_py.ndt.matching.second_look import (
     best_of,
     best_of_second_look,
 )
-from rmw_manycore_py.ndt.matching.vehicles import beyond_vehicles
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
 CANNOT_WORK = "the matcher cannot work"  # out of memory, or workers keep dying
@@ -150,11 +145,7 @@ class Matcher:
         *,
         only_pose: bool = False,
     ) -> Iterator[Alignment]:
-        """Yield alignments to the finest level alone, each computed when it is asked for.
-
-        The first begins without what may be vehicles (vehicles.py), or where the map says nothing
-        (evidence.py), the second at the guess.
-        """
+        """Yield alignments to the finest level alone (closer_look.py), computed when asked for."""
         asked = self._asked(points, T_map_guess, T_map_regularization)
         return self._answers(asked, only_pose, self._closely)
 
@@ -238,14 +229,9 @@ class Matcher:
         return best_of(first, closer, self._convinces)
 
     def _closely(self, asked: Question) -> Iterator[Alignment]:
-        """Align to the finest level from where what cannot mislead leads, then as asked."""
-        seen = beyond_vehicles(asked.scan, asked.guess)
-        seen = known_points(self._require_map().finest, seen, asked.guess)
-        start = self._aligned(replace(asked, scan=seen), polish=False)
-        if not start.is_degenerate:
-            there = replace(asked, guess=start.T_map_sensor)
-            yield self._aligned(there, is_close=True).continued_from(start)
-        yield self._aligned(asked, is_close=True)
+        """Align to the finest level alone (closer_look.py)."""
+        voxel_map, outlier_ratio = self._require_map(), self.options.outlier_ratio
+        return closer_looks(asked, voxel_map, outlier_ratio, self._aligned, self.score)
 
     def _looked_again(self, first: Alignment, asked: Question, convinces: Convinces) -> Alignment:
         def aligned_widely(start: Pose, surpassed: float) -> Alignment:
@@ -370,8 +356,8 @@ class Matcher:
         voxel_map = self._require_map()
         scan = scan_points(points)
         sample = np.ascontiguousarray(scan[:: max(1, len(scan) // SAMPLE)])
-        evidence = voxel_map.finest.point_evidence(sample, T_map_sensor, self.options.outlier_ratio)
-        return explained_score(evidence.astype(np.float64), voxel_map.own_likelihood)
+        evidence = Evidence.of(voxel_map, sample, T_map_sensor, self.options.outlier_ratio)
+        return evidence.explained_score()
 
     def point_scores(self, points: ArrayLike, T_map_sensor: ArrayLike) -> NDArray[np.float32]:
         """Return for each of points (N, 3) at a pose (4, 4) the score of its best voxel (N,).

@@ -219,15 +219,16 @@ class PoseJudge:
 
         :param is_first: no motion confirms the pose.
         """
-        if alignment.explained_score > self.level.of_explained:
+        level = self.level
+        if alignment.explained_score > (level.of_explained if is_first else level.of_confirmed):
             return ""
         score = alignment.nearest_voxel_likelihood
-        if not score > self.level.level:
-            return f"the score {score:.3f} is not above the level {self.level.level:.3f}"
+        if not score > level.level:
+            return f"the score {score:.3f} is not above the level {level.level:.3f}"
         if len(self._recent) == DROP_SCORES and score < DROP_SHARE * median(self._recent):
             return f"the score fell from {median(self._recent):.3f} to {score:.3f}"
-        if is_first and self._searches and not alignment.fit > self.level.of_first:
-            return f"the first pose's fit {alignment.fit:.3f} is below {self.level.of_first:.3f}"
+        if is_first and self._searches and not alignment.fit > level.of_first:
+            return f"the first pose's fit {alignment.fit:.3f} is below {level.of_first:.3f}"
         return ""
 
 

@@ -67,4 +67,5 @@ class LookAlong:
         starts = along.places(expected.middle)
         some = scan_points(scan.points[:: -(-len(starts) // COST)])
         found = [self._here.align_once(some, start, only_pose=True) for start in starts]
-        return distinct([one for one in found if not one.is_degenerate], SAME_M)
+        ends = [one for one in found if not one.is_degenerate]
+        return distinct(ends, SAME_M, lambda place: place.fit)

@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Recovery after refused scans: searches around the last good pose first, then farther.
 
-For a first pose it searches with the first scan, globally before it searches around the guess.
+For a first pose it searches with the first scan, globally: a search around the guess confirms that.
 
 ```
  tracking ── N scans refused ─► around: 5 m, 30 degrees ── unclear ─► globally: 20 m, any yaw
@@ -25,7 +25,7 @@ from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 from rmw_manycore_py.ndt.trust.judge import PoseJudge
 from rmw_manycore_py.ndt.trust.motion import Believed
 from rmw_manycore_py.ndt.trust.region_search import RegionSearch
-from rmw_manycore_py.ndt.trust.search import Region
+from rmw_manycore_py.ndt.trust.search import Found, Region
 
 AROUND_M = 5.0
 AT_ONCE = 2  # searches for a first pose that wait for no further refused scans
@@ -62,6 +62,8 @@ class Recovery:
         self._search = RegionSearch(options)
         self._searched: _Scan | None = None
         self._region: Region | None = None
+        self._is_first = False
+        self._before: Found | None = None  # of the search before
         self._refused = 0
         self._searches = 0
         self.step = Step.TRACKING
@@ -83,6 +85,7 @@ class Recovery:
     def believed(self) -> None:
         """Note that a scan was believed, which ends the recovery."""
         self._refused, self._searches, self.note = 0, 0, ""
+        self._before = None
         self.step = Step.TRACKING
 
     def reset(self) -> None:
@@ -110,7 +113,8 @@ class Recovery:
         if not self.is_on or not is_due or not self._search.is_idle:
             return
         if self.step is Step.FOUND:
-            self._searches = 0
+            self._searches, self._before = 0, None
+        self._is_first = is_first
         self._region = self._next_region(at, guess, is_first)
         self.step = Step.GLOBALLY if self._region.any_yaw else Step.AROUND
         self._searches += 1
@@ -122,17 +126,10 @@ class Recovery:
         centres = [at]
         if guess is not None and poses.distance_m(at, guess) > self._radius_m:
             centres.append(guess)
-        regions = [
-            region
-            for centre in centres
-            for region in (
-                Region(centre, AROUND_M, any_yaw=False),
-                Region(centre, self._radius_m, any_yaw=True),
-            )
-        ]
-        wide = regions[1::2]
-        if is_first:
-            regions[:2] = reversed(regions[:2])
+        wide = [Region(centre, self._radius_m, any_yaw=True) for centre in centres]
+        near = [Region(centre, AROUND_M, any_yaw=False) for centre in centres]
+        pairs = zip(wide, near, strict=True) if is_first else zip(near, wide, strict=True)
+        regions = [region for pair in pairs for region in pair]
         if self._searches < len(regions):
             return regions[self._searches]
         return wide[self._searches % len(wide)]
@@ -150,7 +147,9 @@ class Recovery:
         if scan is None or self.step is Step.TRACKING:  # recovered without it
             return False
         assert self._region is not None
-        unclear = found.why_unclear(judge.level, self._region)
+        only_confirms = self._is_first and not self._region.any_yaw
+        unclear = found.why_unclear(judge.level, self._before, only_confirms=only_confirms)
+        self._before = found
         self.note = f"{self.step.value}: {unclear or 'clear'}"
         if unclear:
             return False

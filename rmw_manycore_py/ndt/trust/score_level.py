@@ -19,6 +19,7 @@ from rmw_manycore_py.ndt.matching.second_look import CONVINCING_SHARE
 MAP_SHARE = 0.75  # of the score of the map's own points
 DRIVE_SHARE = 0.90  # of the median of recent believed scores
 FIRST_SHARE = CONVINCING_SHARE  # of the map's own score: minimum fit of an unconfirmed pose
+CONFIRMED_SHARE = 0.95  # of a first pose's explained score: where motion or searches lead alike
 
 FEWEST_SCORES = 5  # minimum number for the drive's median
 KEPT_SCORES = 20  # 2 s at 10 Hz: follows the place, not single scans
@@ -75,9 +76,14 @@ class ScoreLevel:
 
     @property
     def of_explained(self) -> float:
-        """Return the minimum explained score, also of a first pose."""
+        """Return the minimum explained score of a first pose."""
         usual = self._map_score if len(self._scores) < FEWEST_SCORES else median(self._scores)
         return max(self.of_map, self._explained_share * usual)
+
+    @property
+    def of_confirmed(self) -> float:
+        """Return the minimum explained score of a pose that something else leads to as well."""
+        return max(self.of_map, CONFIRMED_SHARE * self.of_explained)
 
     @property
     def level(self) -> float:

@@ -28,8 +28,7 @@ FOLLOWED = 16  # places that are aligned with the whole scan
 AROUND_YAW_RAD = np.radians(45.0)  # of a region without any_yaw
 TILT_RAD = np.radians(15.0)  # of a result, against the gravity that is known
 SAME_M, SAME_RAD = 1.0, np.radians(10.0)  # closer results count as one place
-MARGIN = 0.05  # minimum lead of the best place, relative to its fit
-ONLY_SHARE = 0.95  # of the fit of a first pose: that of a place which stands out
+MARGIN = 0.05  # minimum lead of the best place, as a share of its score
 
 # A place also stands out if its lead is large compared with the differences of the others.
 MIN_LEAD, LEAD_DEVIATIONS, MIN_PLACES = 0.01, 2.5, 5
@@ -56,37 +55,43 @@ class Region:
 
 @dataclass(frozen=True)
 class Found:
-    """Distinct places, best first."""
+    """Distinct places, in the order of their explained scores, the best first."""
 
     places: tuple[Alignment, ...]
 
     @property
     def margin(self) -> float:
-        """Return by which fraction of its fit the best place leads the second best."""
-        if len(self.places) < 2:
-            return 1.0 if self.places else 0.0
-        best, second = (place.fit for place in self.places[:2])
-        return (best - second) / best if best > 0.0 else 0.0
+        """Return by which share of its explained score the best place leads the second best."""
+        return _lead([place.explained_score for place in self.places])
 
-    def why_unclear(self, level: ScoreLevel, region: Region) -> str:
+    def why_unclear(
+        self, level: ScoreLevel, other: Found | None = None, *, only_confirms: bool = False
+    ) -> str:
         """Return why the best place is not accepted; "" if it is.
 
-        The right place may be outside of the region, and a wrong one the best. So the best must fit
-        as well as a first pose; nearly as well in a region of any yaw, which is large enough to
-        contain places like it.
+        The right place may be outside of the region, and a wrong one the best. So the best must be
+        explained like a first pose; nearly as well where another search leads to it, too.
+
+        :param other: what the search of another region found for this vehicle.
+        :param only_confirms: accept nothing that the other search does not lead to.
         """
         if not self.places:
             return "the scan fits nowhere"
         best = self.places[0]
-        explained = best.explained_score
-        min_fit = level.of_first * (ONLY_SHARE if region.any_yaw else 1.0)
-        if not (explained > level.of_explained or best.fit > min_fit):
-            return f"the best explained score {explained:.3f} is below {level.of_explained:.3f}"
+        is_confirmed = other is not None and other.leads_to(best)
+        least = level.of_confirmed if is_confirmed else level.of_explained
+        if not best.explained_score > least:
+            return f"the best explained score {best.explained_score:.3f} is below {least:.3f}"
         if self.margin < MARGIN:
-            other = self.places[1]
-            apart_m = poses.distance_m(best.T_map_sensor, other.T_map_sensor)
+            second = self.places[1]
+            apart_m = poses.distance_m(best.T_map_sensor, second.T_map_sensor)
             return f"{apart_m:.1f} m apart it fits equally well, within {100 * self.margin:.1f} %"
-        return ""
+        return "in a larger region it is not the best" if only_confirms and not is_confirmed else ""
+
+    def leads_to(self, place: Alignment) -> bool:
+        """Return whether a place is the best of these, and stands out."""
+        is_best = bool(self.places) and _is_same(self.places[0], place, SAME_M)
+        return is_best and self.margin >= MARGIN
 
 
 def search(matcher: Matcher, scan: ScanPoints, region: Region) -> Found:
@@ -121,8 +126,8 @@ def search_steps(
             if not one.is_degenerate and _is_upright(one.T_map_sensor, start):
                 fine.append(one)
         yield True
-    places = distinct(fine, SAME_M)
-    return Found(tuple(matcher.explained(place, scan) for place in places[:1]) + tuple(places[1:]))
+    explained = [matcher.explained(place, scan) for place in fine]
+    return Found(tuple(distinct(explained, SAME_M, lambda place: place.explained_score)))
 
 
 def _promising(
@@ -147,27 +152,36 @@ def _is_upright(T: Pose, start: Pose) -> bool:
 
 
 def lead_of_best(places: Sequence[Alignment]) -> tuple[bool, bool]:
-    """Return whether the best of distinct places stands out from the others, and whether clearly.
+    """Return whether the best of distinct places stands out by its fit, and whether clearly.
 
     In a street of few features the others differ little from each other, too.
     """
-    found = Found(tuple(places))
+    fits = [place.fit for place in places]
+    is_clear = _lead(fits) >= MARGIN
     if len(places) < MIN_PLACES:
-        return found.margin >= MARGIN, found.margin >= MARGIN
-    others = np.array([place.fit for place in places[1:]])
-    least = max(MIN_LEAD * places[0].fit, LEAD_DEVIATIONS * float(np.std(others)))
-    return places[0].fit - others[0] >= least, found.margin >= MARGIN
+        return is_clear, is_clear
+    least = max(MIN_LEAD * fits[0], LEAD_DEVIATIONS * float(np.std(fits[1:])))
+    return fits[0] - fits[1] >= least, is_clear
 
 
-def distinct(places: Sequence[Alignment], apart_m: float) -> list[Alignment]:
+def distinct(
+    places: Sequence[Alignment], apart_m: float, rank: Callable[[Alignment], float]
+) -> list[Alignment]:
     """Return the best alignment of each place, best first."""
     kept: list[Alignment] = []
-    for place in sorted(places, key=lambda one: one.fit, reverse=True):
+    for place in sorted(places, key=rank, reverse=True):
         if not any(_is_same(place, other, apart_m) for other in kept):
             kept.append(place)
             if len(kept) == FOLLOWED:
                 break
     return kept
+
+
+def _lead(scores: Sequence[float]) -> float:
+    """Return by which share of itself the first of falling scores leads the second."""
+    if len(scores) < 2:
+        return float(len(scores))
+    return (scores[0] - scores[1]) / scores[0] if scores[0] > 0.0 else 0.0
 
 
 def _is_same(a: Alignment, b: Alignment, apart_m: float) -> bool:

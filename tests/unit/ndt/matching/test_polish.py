@@ -62,7 +62,7 @@ def test_few_points_approach_the_maximum_and_all_refine_it():
     assert errors(found.T_map_sensor, with_all.T_map_sensor)[0] < 0.01
     closer = next(polishing.closer_looks(scan, guess))
     assert closer.first.points_in_map <= FIRST_POINTS
-    assert errors(closer.T_map_sensor, found.T_map_sensor)[0] < 0.002
+    assert errors(closer.T_map_sensor, found.T_map_sensor)[0] < 0.005  # with fewer points
 
 
 def test_where_the_map_is_too_sparse_for_finer_voxels_nothing_changes():

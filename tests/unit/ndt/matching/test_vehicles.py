@@ -80,8 +80,8 @@ def test_where_what_no_vehicle_has_misleads_the_guess_itself_leads_home():
     drive = half(simulated()["street 1"]())
     matcher = SerialMatcher(OPTIONS)
     matcher.set_map(VoxelMap.from_points(drive.map_points, OPTIONS))
-    scan, truth = scan_points(drive.scan(41)), drive.poses[41]
-    guess = truth @ poses.from_xyz_rpy((0.0, 0.5, 0.0))
+    scan, truth = scan_points(drive.scan(67)), drive.poses[67]
+    guess = truth @ poses.from_xyz_rpy((0.5, 0.0, 0.0))
     aside, home = matcher.closer_looks(scan, guess)
     assert poses.distance_m(aside.T_map_sensor, truth) > 1.0
     assert poses.distance_m(home.T_map_sensor, truth) < 0.1

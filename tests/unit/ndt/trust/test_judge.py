@@ -101,6 +101,10 @@ def test_a_low_score_may_be_explained_also_of_a_first_pose():
     for share, is_believed in ((0.9, True), (0.86, False)):
         explained = replace(hidden, explained_score=share * OWN_SCORE)
         assert judge.judge(0.0, explained, at(0.0)).is_believed == is_believed
+    judge.begin_at(Believed(0.0, at(0.0), at(0.0)))  # motion confirms the next
+    for share, is_believed in ((0.86, True), (0.82, False)):
+        explained = replace(aligned(at(1.5), 1.8, 0.5), explained_score=share * OWN_SCORE)
+        assert judge.judge(0.1, explained, at(1.5)).is_believed == is_believed
     judge, stamp_s, x = driven()
     explained = replace(aligned(at(x), 1.8), explained_score=0.9 * OWN_SCORE)
     assert judge.judge(stamp_s, explained, at(x)).is_believed

@@ -7,6 +7,7 @@ import os
 import signal
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +18,11 @@ from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import scan_points
+from rmw_manycore_py.ndt.matching.alignment import Alignment
 from rmw_manycore_py.ndt.trust.judge import PoseJudge
 from rmw_manycore_py.ndt.trust.recovery import Recovery, Step
-from rmw_manycore_py.ndt.trust.search import MARGIN, Found, Region, search, search_steps
+from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
+from rmw_manycore_py.ndt.trust.search import Found, Region, search, search_steps
 from support import wait_until
 from support.samples.ndt_world import errors, pose, scan_at, street
 
@@ -153,17 +156,16 @@ def lost_in(matcher: SerialMatcher, scan: np.ndarray) -> tuple[Found, str]:
     """Search the whole map; return also why the best place is not accepted."""
     region = Region(np.eye(4), np.inf, any_yaw=True)
     found = search(matcher, scan_points(scan), region)
-    return found, found.why_unclear(judge_of(matcher.map).level, region)
+    return found, found.why_unclear(judge_of(matcher.map).level)
 
 
 @pytest.mark.parametrize(("index", "ahead_m"), [(3, 30.0), (5, -30.0), (61, 30.0)])
 def test_a_search_that_does_not_reach_the_scan_finds_nothing(drives, matcher, index, ahead_m):
-    """One place stands out from the others there, and is wrong."""
+    """Not even where one place stands out from the others there."""
     centre = drives[0].poses[index] @ pose(ahead_m, 0.0, 0.0, 0.0, 0.0, 0.0)
     region = Region(centre, 20.0, any_yaw=True)
     found = search(matcher, scan_points(drives[0].scan(index)), region)
-    assert found.margin > MARGIN
-    assert "explained score" in found.why_unclear(judge_of(matcher.map).level, region)
+    assert "explained score" in found.why_unclear(judge_of(matcher.map).level)
 
 
 def test_a_scan_is_found_without_a_guess(drives, matcher):
@@ -191,6 +193,50 @@ def test_a_scan_of_the_ground_alone_fits_nowhere(matcher):
     ground = np.stack([x.ravel(), y.ravel(), np.full(x.size, -1.9)], axis=1)
     assert lost_in(matcher, ground)[1] == "the scan fits nowhere"
     assert lost_in(matcher, np.full((10, 3), np.nan))[1] == "the scan fits nowhere"
+
+
+def found_at(*places: tuple[float, float]) -> Found:
+    """Return places at some x [m], and their explained scores."""
+    base = Alignment.refused(np.eye(4), "", OPTIONS)
+    return Found(
+        tuple(
+            replace(base, T_map_sensor=pose(x, 0.0, 0.0, 0.0, 0.0, 0.0), explained_score=score)
+            for x, score in places
+        )
+    )
+
+
+@pytest.mark.parametrize(
+    ("wide", "near", "why"),
+    [
+        (((0.0, 0.86), (9.0, 0.5)), ((0.2, 0.86),), ""),
+        (((0.0, 0.86), (9.0, 0.83)), ((0.2, 0.86),), "below"),  # the first does not stand out
+        (((0.0, 0.86), (9.0, 0.5)), ((0.2, 0.82),), "below"),
+        (((9.0, 0.7), (0.0, 0.5)), ((0.0, 0.86),), "below"),  # the first led elsewhere
+        (((9.0, 0.7), (0.0, 0.5)), ((0.0, 0.95),), "larger region"),
+        (((0.0, 0.86), (9.0, 0.5)), ((0.2, 0.86), (4.0, 0.85)), "equally well"),
+    ],
+)
+def test_a_second_search_confirms_a_first_pose(wide, near, why):
+    level = ScoreLevel()
+    level.map_changed(1.0)
+    assert "below" in found_at(*wide).why_unclear(level)
+    unclear = found_at(*near).why_unclear(level, found_at(*wide), only_confirms=True)
+    assert why in unclear
+    assert bool(why) == bool(unclear)
+
+
+def test_around_a_first_guess_a_search_only_confirms(world, recovery):
+    points, voxel_map = world
+    judge, scan = judge_of(voxel_map), scan_at(points, TRUTH)
+    recovery.refused(1.0, scan, TRUTH, TRUTH, is_first=True)
+    wait_until(lambda: recovery.take(judge), "the wide search has found it")
+    recovery.step, recovery._searches = Step.TRACKING, 1
+    recovery._before = found_at((30.0, 1.0))  # as if that had led elsewhere
+    recovery.refused(2.0, scan, TRUTH, TRUTH, is_first=True)
+    assert recovery.step is Step.AROUND
+    wait_until(lambda: recovery.take(judge) or "searching" in recovery.note, "its end")
+    assert "in a larger region it is not the best" in recovery.note
 
 
 def shared_names() -> Counter[str]:
