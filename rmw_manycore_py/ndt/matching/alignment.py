@@ -65,6 +65,8 @@ class Alignment:
     :param is_degenerate: the score has no maximum at the pose, so the pose is meaningless.
     :param xy_spread_m2: (2, 2) covariance of x and y from the curvature of the score, times the
         number of points: large along a tunnel, for any scan size.
+    :param raised_spread_m2: the same from what stands above the ground alone, if the other is
+        doubtful; None if not computed.
     :param first: score at the start of the steps on the finest map; without coarser maps, the score
         of the guess.
     :param path: (n, 4, 4) the guess and the pose after each step, on all maps; at most 64 of
@@ -91,6 +93,7 @@ class Alignment:
     share_in_map: float = 0.0
     is_degenerate: bool = False
     xy_spread_m2: Matrix = field(default_factory=lambda: np.zeros((2, 2)))
+    raised_spread_m2: Matrix | None = None
     explained_score: float = 0.0
     looks: int = 1
     is_refused: bool = False
@@ -137,6 +140,11 @@ class Alignment:
     def fit(self) -> float:
         """Return the likelihood, reduced for points outside the map; for comparing places."""
         return self.nearest_voxel_likelihood * self.share_in_map
+
+    @property
+    def known_fit(self) -> float:
+        """Return how well a result fits, by what the map can contradict where that is known."""
+        return 0.0 if self.is_degenerate else max(self.fit, self.explained_score)
 
     def scored(self, score: Score, points: int) -> Alignment:
         """Return this alignment with the score of more points than it was found with."""

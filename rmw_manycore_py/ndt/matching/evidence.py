@@ -32,6 +32,7 @@ MAX_FOREIGN_M = 3.5  # height of a bus or truck above the ground, less half a vo
 ABOVE_GROUND_M = 1.2  # the ground fits anywhere: it does not make up for contradictions
 MIN_COLUMNS_AROUND = 6  # of eight; a column at a straight edge has five
 MIN_SUPPORT = 0.03  # minimum share of points above ground that fit
+RAISED_M = 0.4  # minimum height of what stands above the ground: a kerb does not, a guard rail does
 
 Mask = npt.NDArray[np.bool_]
 
@@ -65,6 +66,11 @@ class Evidence:
         known = ~np.isnan(found[:, 1]) & (fits | (around >= MIN_COLUMNS_AROUND))
         stands = (height_m > 0.0) & (height_m < MAX_FOREIGN_M)
         return cls(score, height_m, fits, is_past, known & (fits | is_past | ~stands))
+
+    @property
+    def raised(self) -> Mask:
+        """Return (N,) which points of the rest stand above the ground."""
+        return self.rest & (self.height_m > RAISED_M)
 
     def explained_score(self) -> float:
         """Return the score of the rest, reduced by contradictions, to compare with a map's own."""

@@ -15,7 +15,13 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.ndt.geometry import poses
-from rmw_manycore_py.ndt.geometry.arrays import Pose, pose_error, pose_matrix, scan_points
+from rmw_manycore_py.ndt.geometry.arrays import (
+    Pose,
+    ScanPoints,
+    pose_error,
+    pose_matrix,
+    scan_points,
+)
 from rmw_manycore_py.ndt.matching import covariance
 from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
 from rmw_manycore_py.ndt.matching.closer_look import closer_looks
@@ -39,6 +45,8 @@ BUILT_FOR = (  # options that matcher and map must agree on
     *("voxel_size_m", "coarse_levels", "second_look_levels", "polishing_levels"),
     *("search", "voxel_covariance"),
 )
+DOUBTFUL_SPREAD_M = 0.3  # above, most of what constrains a scan may be the pattern of the ground
+UNCONSTRAINED_M2 = 1e4 * np.eye(2)
 FEWEST_POINTS = 6  # a pose has six unknowns; each point on a surface fixes one
 
 
@@ -353,11 +361,28 @@ class Matcher:
 
     def explained_score(self, points: ArrayLike, T_map_sensor: Pose) -> float:
         """Return the score of points (N, 3) at a pose that the map can contradict (evidence.py)."""
-        voxel_map = self._require_map()
+        return self._evidence(points, T_map_sensor)[1].explained_score()
+
+    def raised(self, alignment: Alignment, points: ArrayLike) -> Alignment:
+        """Return an alignment of points (N, 3) with its `raised_spread_m2`, if that matters."""
+        spread_m2 = float(np.linalg.eigvalsh(alignment.xy_spread_m2)[1])
+        if alignment.is_degenerate or spread_m2 < DOUBTFUL_SPREAD_M**2:
+            return alignment
+        sample, evidence = self._evidence(points, alignment.T_map_sensor)
+        voxel_map, raised_m2 = self._require_map(), UNCONSTRAINED_M2
+        if evidence.raised.any():
+            of_map = (voxel_map.levels, sample[evidence.raised], alignment.T_map_sensor)
+            covariance = self._native.evaluate(*of_map, voxel_map.polishing).covariance
+            if covariance is not None:
+                raised_m2 = covariance[:2, :2] * len(sample)
+        return replace(alignment, raised_spread_m2=raised_m2)
+
+    def _evidence(self, points: ArrayLike, T_map_sensor: Pose) -> tuple[ScanPoints, Evidence]:
+        """Return some of points (N, 3), and what the map says about them."""
         scan = scan_points(points)
         sample = np.ascontiguousarray(scan[:: max(1, len(scan) // SAMPLE)])
-        evidence = Evidence.of(voxel_map, sample, T_map_sensor, self.options.outlier_ratio)
-        return evidence.explained_score()
+        ratio = self.options.outlier_ratio
+        return sample, Evidence.of(self._require_map(), sample, T_map_sensor, ratio)
 
     def point_scores(self, points: ArrayLike, T_map_sensor: ArrayLike) -> NDArray[np.float32]:
         """Return for each of points (N, 3) at a pose (4, 4) the score of its best voxel (N,).

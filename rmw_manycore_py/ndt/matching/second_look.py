@@ -59,7 +59,7 @@ def best_of(first: Alignment, others: Iterable[Alignment], convinces: Convinces)
     best, looks = first, first.looks
     for found in others:
         looks += 1
-        if _fit(found) > _fit(best):
+        if found.known_fit > best.known_fit:
             best = found
             if convinces(best):
                 break
@@ -73,10 +73,3 @@ def _starts(guess: Pose) -> Iterator[Pose]:
             beside = guess.copy()
             beside[:3, 3] += side * guess[:3, axis]
             yield beside
-
-
-def _fit(alignment: Alignment) -> float:
-    """Return how well a result fits, by what the map can contradict where that is known."""
-    if alignment.is_degenerate:
-        return 0.0
-    return max(alignment.fit, alignment.explained_score)

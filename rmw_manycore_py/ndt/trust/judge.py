@@ -10,20 +10,18 @@ from statistics import median
 import numpy as np
 
 from rmw_manycore_py.ndt.geometry import poses
-from rmw_manycore_py.ndt.geometry.arrays import Matrix, Matrix6, Pose
+from rmw_manycore_py.ndt.geometry.arrays import Matrix6, Pose
 from rmw_manycore_py.ndt.matching.alignment import Alignment
-from rmw_manycore_py.ndt.trust.along import Along
+from rmw_manycore_py.ndt.trust.along import BASIN_M, Along
 from rmw_manycore_py.ndt.trust.motion import STEADY_SHARE, Believed, Expectation, MotionModel
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
+from rmw_manycore_py.ndt.trust.weak import Weak, weak_directions
 
 MIN_SHARE_IN_MAP = 0.3  # of the points: below, the vehicle is outside the map or elsewhere
 DROP_SHARE = 0.88  # of the median of recent scores: lower is a sudden drop
 DROP_SCORES = 5
 SURE_AFTER = 3  # consecutive poses that each agree with the previous one
 UNSURE_M, UNSURE_RAD = 1.0, 0.2  # standard deviations of an unconfirmed pose
-# Minimum spread of a scan that does not constrain the position along a street. It is 0.14 to 0.48
-# on streets, also repetitive ones, and recorded scans; 0.62 and more in a bare tunnel.
-WEAK_SPREAD_M = 0.55
 WEAK_M = 2.0  # standard deviation along the weak axis, where it begins
 WEAK_DRIFT = 0.05  # growth of that per metre driven
 GAP_DRIFT = 0.5 * STEADY_SHARE  # likewise in a gap, where nothing checks the odometry
@@ -41,7 +39,7 @@ class Verdict:
     :param level: the required score.
     :param expected: expected pose of the vehicle, if known.
     :param along: direction in which the position is uncertain.
-    :param is_weak: the scan itself does not constrain the position in that direction.
+    :param weak: what the scan itself does not constrain.
     :param is_score_low: the score refuses the pose, whatever else does.
     :param is_plausible: the motion leads there, as far as it is known.
     """
@@ -51,7 +49,7 @@ class Verdict:
     level: float
     expected: Expectation | None
     along: Along | None = None
-    is_weak: bool = False
+    weak: Weak | None = None
     is_score_low: bool = False
     is_plausible: bool = True
 
@@ -75,13 +73,17 @@ class Verdict:
 
         There an alignment ends at the nearest of many maxima, one for each voxel.
         """
-        if self.along is None or not self.is_weak or self.expected is None:
+        if self.along is None or self.weak is None or self.expected is None:
             return T
         expected, guess = self.expected, self.expected.guess
         base = expected.poses[0] if expected.is_steady else expected.middle
         if guess is not None and abs(self.along.offset_m(base, guess)) <= self.along.reach_m:
             base = guess
-        return self.along.moved(T, self.along.offset_m(T, base))
+        if not self.weak.is_all:
+            return self.along.moved(T, self.along.offset_m(T, base))
+        follows: Pose = T.copy()
+        follows[:2, 3] = base[:2, 3]
+        return follows
 
     @property
     def uncertain(self) -> Along | None:
@@ -95,10 +97,7 @@ class Verdict:
         """Return whether the uncertain direction explains an error; for tests of the judge."""
         error = T[:3, 3] - truth[:3, 3]
         if self.along is not None:
-            along_m = float(error[:2] @ self.along.axis)
-            if abs(along_m) > COVERED_DEVIATIONS * self.along.deviation_m:
-                return False
-            error[:2] -= along_m * self.along.axis
+            error[:2] = self.along.beyond_m(error[:2], COVERED_DEVIATIONS)
         is_near = bool(np.linalg.norm(error) <= COVERED_M)
         return is_near and poses.angle_rad(T, truth) <= COVERED_RAD
 
@@ -144,39 +143,32 @@ class PoseJudge:
         low = "" if unusable else self._why_low(alignment, is_first=expected is None)
         implausible = "" if unusable else _why_implausible(alignment, expected, along)
         why = unusable or low or implausible
-        weak = weak_axis(alignment)
+        weak = weak_directions(alignment)
         if stood_out >= RESOLVED_AFTER:
             along = None
         elif weak is not None:
-            along = Along(weak, self._drifted_m(alignment, expected, along))
+            along = _weakened(weak, along, self._drift_m(alignment, expected))
         elif along is not None and not along.is_open:
             along = None
         is_sure = not why and expected is not None and self._confirmed >= SURE_AFTER
         is_sure = is_sure and (along is None or not along.is_open)
-        level, is_weak = self.level.level, weak is not None
-        is_low, is_plausible = bool(low), not implausible
-        return Verdict(why, is_sure, level, expected, along, is_weak, is_low, is_plausible)
+        is_low, is_plausible, level = bool(low), not implausible, self.level.level
+        return Verdict(why, is_sure, level, expected, along, weak, is_low, is_plausible)
 
     def _uncertain(self, expected: Expectation | None, stood_out: int) -> Along | None:
         """Return the direction in which the expected pose is uncertain."""
         gap = None if expected is None else expected.gap
         if gap is None or (expected is not None and expected.is_steady and not stood_out):
             return self._along
-        if self._along is None or gap.deviation_m > self._along.deviation_m:
-            return gap
-        return self._along
+        return gap if self._along is None else self._along.joined(gap)
 
-    def _drifted_m(
-        self, alignment: Alignment, expected: Expectation | None, along: Along | None
-    ) -> float:
-        """Return the deviation along a weak axis: it grows until features return."""
-        driven_m = 0.0
-        if expected is not None:
-            moved_m = poses.distance_m(expected.last, alignment.T_map_sensor)
-            driven_m = max(moved_m, expected.guess_motion_m)
-        before_m = WEAK_M if along is None else max(WEAK_M, along.deviation_m)
-        is_gap = expected is not None and expected.gap is not None
-        return before_m + (GAP_DRIFT if is_gap else WEAK_DRIFT) * driven_m
+    def _drift_m(self, alignment: Alignment, expected: Expectation | None) -> float:
+        """Return by how much the deviation in a weak direction grows: until features return."""
+        if expected is None:
+            return 0.0
+        moved_m = poses.distance_m(expected.last, alignment.T_map_sensor)
+        driven_m = max(moved_m, expected.guess_motion_m)
+        return (GAP_DRIFT if expected.gap is not None else WEAK_DRIFT) * driven_m
 
     def may_look_again(self, verdict: Verdict) -> bool:
         """Return whether a refused result may be replaced by one from farther off.
@@ -248,8 +240,21 @@ def _why_implausible(
     return f"the pose is implausible: {why}" if why else ""
 
 
-def weak_axis(alignment: Alignment) -> Matrix | None:
-    """Return the direction (2,) in which the scan does not constrain x and y; None without one."""
-    values, vectors = np.linalg.eigh(alignment.xy_spread_m2)
-    axis: Matrix = vectors[:, 1]
-    return axis if values[1] > WEAK_SPREAD_M**2 else None
+def _weakened(weak: Weak, along: Along | None, drift_m: float) -> Along:
+    """Return the uncertainty after a weak scan: it grows in what that leaves open.
+
+    What a scan constrains is resolved if alignments come home from the uncertainty before.
+    """
+    if along is None:
+        return Along(weak.axis, WEAK_M + drift_m, WEAK_M + drift_m if weak.is_all else 0.0)
+    is_along = abs(float(weak.axis @ along.axis)) >= np.cos(np.pi / 4)
+
+    def after_m(before_m: float, *, is_open: bool) -> float:
+        if is_open:
+            return max(WEAK_M, before_m) + drift_m
+        return before_m if before_m > BASIN_M else 0.0
+
+    deviation_m = after_m(along.deviation_m, is_open=weak.is_all or is_along)
+    across_m = after_m(along.across_m, is_open=weak.is_all or not is_along)
+    axis = weak.axis if is_along and not along.across_m and not weak.is_all else along.axis
+    return Along(axis, deviation_m, across_m)

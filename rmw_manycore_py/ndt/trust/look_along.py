@@ -47,7 +47,7 @@ class LookAlong:
             self._scans = self.stood_out = 0
             return None
         self._scans += 1
-        every = EVERY_WEAK if verdict.is_weak else EVERY
+        every = EVERY_WEAK if verdict.weak else EVERY
         if self.stood_out == 0 and self._scans % every != 1:
             return None
         places = self._places(scan, along, expected)
@@ -56,6 +56,7 @@ class LookAlong:
             self.stood_out = 0
             return None
         whole = self._matcher.align_once(scan.points, places[0].T_map_sensor, scan.regularization)
+        whole = self._matcher.raised(whole, scan.points)
         best = self._matcher.explained(whole, scan.points)
         is_again = poses.distance_m(best.T_map_sensor, expected.poses[0]) < SAME_M
         self.stood_out = RESOLVED_AFTER if is_clear else (self.stood_out if is_again else 0) + 1

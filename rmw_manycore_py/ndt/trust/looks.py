@@ -111,6 +111,7 @@ class Looks:
 
     def _judged(self, scan: ScanAt, alignment: Alignment) -> Looked:
         """Judge an alignment; if nothing but its score refuses it, with what may explain that."""
+        alignment = self._matcher.raised(alignment, scan.points)
         verdict = self._judge.judge(scan.stamp_s, alignment, scan.guess)
         if verdict.is_score_low and verdict.is_plausible:
             alignment = self._matcher.explained(alignment, scan.points)

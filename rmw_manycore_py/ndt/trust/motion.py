@@ -15,7 +15,7 @@ import numpy as np
 
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Pose
-from rmw_manycore_py.ndt.trust.along import Along
+from rmw_manycore_py.ndt.trust.along import BASIN_M, Along
 
 NEAR_M, NEAR_RAD = 1.0, np.radians(15.0)  # within this distance, only the score decides
 ACCELERATION_M_S2 = 10.0  # an emergency braking of any vehicle
@@ -172,7 +172,7 @@ class MotionModel:
             gap=self._gap(age_s) if by_motion is None and not is_first else None,
             guess=guess,
             is_first=is_first,
-            is_steady=by_guess is not None and apart_m <= max(NEAR_M, STEADY_SHARE * steady_m),
+            is_steady=by_guess is not None and apart_m <= _steady_within_m(steady_m),
         )
 
     def _gap(self, age_s: float) -> Along:
@@ -203,6 +203,11 @@ def _speed_m_s(believed: deque[Believed]) -> float:
         return 25.0
     before, last = believed
     return poses.distance_m(before.T, last.T) / (last.stamp_s - before.stamp_s)
+
+
+def _steady_within_m(driven_m: float) -> float:
+    """Return by how much guesses may differ from a constant speed: alignments come home from it."""
+    return min(max(NEAR_M, STEADY_SHARE * driven_m), BASIN_M)
 
 
 def _turn_rad(age_s: float) -> float:

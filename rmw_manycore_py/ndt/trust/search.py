@@ -28,7 +28,8 @@ FOLLOWED = 16  # places that are aligned with the whole scan
 AROUND_YAW_RAD = np.radians(45.0)  # of a region without any_yaw
 TILT_RAD = np.radians(15.0)  # of a result, against the gravity that is known
 SAME_M, SAME_RAD = 1.0, np.radians(10.0)  # closer results count as one place
-MARGIN = 0.05  # minimum lead of the best place, as a share of its score
+MARGIN = 0.05  # minimum lead of the best place, as a share of its known fit
+ONLY_SHARE = 0.95  # of the fit of a first pose: that of a place which stands out
 
 # A place also stands out if its lead is large compared with the differences of the others.
 MIN_LEAD, LEAD_DEVIATIONS, MIN_PLACES = 0.01, 2.5, 5
@@ -55,14 +56,14 @@ class Region:
 
 @dataclass(frozen=True)
 class Found:
-    """Distinct places, in the order of their explained scores, the best first."""
+    """Distinct places, in the order of their known fit, the best first."""
 
     places: tuple[Alignment, ...]
 
     @property
     def margin(self) -> float:
-        """Return by which share of its explained score the best place leads the second best."""
-        return _lead([place.explained_score for place in self.places])
+        """Return by which share of its known fit the best place leads the second best."""
+        return _lead([place.known_fit for place in self.places])
 
     def why_unclear(
         self, level: ScoreLevel, other: Found | None = None, *, only_confirms: bool = False
@@ -70,7 +71,8 @@ class Found:
         """Return why the best place is not accepted; "" if it is.
 
         The right place may be outside of the region, and a wrong one the best. So the best must be
-        explained like a first pose; nearly as well where another search leads to it, too.
+        explained like a first pose, or have 95 % of its fit: it stands out. Where another search
+        leads to it, too, it may be explained a little less.
 
         :param other: what the search of another region found for this vehicle.
         :param only_confirms: accept nothing that the other search does not lead to.
@@ -80,7 +82,8 @@ class Found:
         best = self.places[0]
         is_confirmed = other is not None and other.leads_to(best)
         least = level.of_confirmed if is_confirmed else level.of_explained
-        if not best.explained_score > least:
+        fits = best.fit > ONLY_SHARE * level.of_first
+        if not (fits or best.explained_score > least):
             return f"the best explained score {best.explained_score:.3f} is below {least:.3f}"
         if self.margin < MARGIN:
             second = self.places[1]
@@ -127,7 +130,7 @@ def search_steps(
                 fine.append(one)
         yield True
     explained = [matcher.explained(place, scan) for place in fine]
-    return Found(tuple(distinct(explained, SAME_M, lambda place: place.explained_score)))
+    return Found(tuple(distinct(explained, SAME_M, lambda place: place.known_fit)))
 
 
 def _promising(

@@ -197,7 +197,7 @@ def test_a_scan_of_the_ground_alone_fits_nowhere(matcher):
 
 def found_at(*places: tuple[float, float]) -> Found:
     """Return places at some x [m], and their explained scores."""
-    base = Alignment.refused(np.eye(4), "", OPTIONS)
+    base = replace(Alignment.refused(np.eye(4), "", OPTIONS), is_degenerate=False)
     return Found(
         tuple(
             replace(base, T_map_sensor=pose(x, 0.0, 0.0, 0.0, 0.0, 0.0), explained_score=score)
