@@ -124,8 +124,8 @@ def search_steps(
         rough = yield from _promising(matcher, sketch, region, make_room)
     fine: list[Alignment] = []
     for start in rough:
-        closer = matcher.closer_looks(scan, start, only_pose=True)
-        for one in (matcher.align_once(scan, start, only_pose=True), next(closer)):
+        once = matcher.align_once(scan, start, only_pose=True)
+        for one in (once, *matcher.closer_looks(scan, start, only_pose=True)):
             if not one.is_degenerate and _is_upright(one.T_map_sensor, start):
                 fine.append(one)
         yield True
