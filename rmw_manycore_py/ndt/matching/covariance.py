@@ -7,13 +7,44 @@ end at different places, and the score there is as good as at the result: x alon
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Matrix6, Pose
 from rmw_manycore_py.ndt.matching.alignment import Alignment
-from rmw_manycore_py.ndt.matching.options import Offsets
+from rmw_manycore_py.ndt.matching.options import MatcherOptions, Offsets
+
+
+def estimated(
+    alignment: Alignment,
+    options: MatcherOptions,
+    align: Callable[[Pose], Pose],
+    likelihood: Callable[[Pose], float],
+) -> Alignment:
+    """Return an alignment with the covariance that the options ask for.
+
+    :param align: returns the result of an alignment from a pose (4, 4).
+    :param likelihood: returns the nearest-voxel likelihood at a pose (4, 4).
+    """
+    kind = options.pose_covariance
+    if alignment.is_degenerate or kind not in ("multi_ndt", "multi_ndt_score"):
+        return alignment
+    around = poses_around(alignment.T_map_sensor, options.offsets_m)
+    results: list[Pose] = []
+    if kind == "multi_ndt":
+        results = [align(T) for T in around]
+        found = from_results(alignment, results)
+    else:
+        likelihoods = [likelihood(T) for T in around]
+        found = from_likelihoods(alignment, around, likelihoods, options.temperature)
+    return replace(
+        alignment,
+        covariance=found,
+        guesses_around=tuple(around),
+        results_around=tuple(results),
+    )
 
 
 def poses_around(T_map_sensor: Pose, offsets_m: Offsets) -> list[Pose]:

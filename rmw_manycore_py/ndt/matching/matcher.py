@@ -301,26 +301,14 @@ class Matcher:
 
     def _with_covariance(self, alignment: Alignment, asked: Question) -> Alignment:
         """Return the alignment with a covariance estimated from further evaluations, if needed."""
-        kind = self.options.pose_covariance
-        if alignment.is_degenerate or kind not in ("multi_ndt", "multi_ndt_score"):
-            return alignment
-        around = covariance.poses_around(alignment.T_map_sensor, self.options.offsets_m)
-        results: list[Pose] = []
-        if kind == "multi_ndt":
-            unpolished = [self._aligned(replace(asked, guess=T), polish=False) for T in around]
-            results = [one.T_map_sensor for one in unpolished]
-            found = covariance.from_results(alignment, results)
-        else:
-            likelihoods = [self.score(asked.scan, T).nearest_voxel_likelihood for T in around]
-            found = covariance.from_likelihoods(
-                alignment, around, likelihoods, self.options.temperature
-            )
-        return replace(
-            alignment,
-            covariance=found,
-            guesses_around=tuple(around),
-            results_around=tuple(results),
-        )
+
+        def result(guess: Pose) -> Pose:
+            return self._aligned(replace(asked, guess=guess), polish=False).T_map_sensor
+
+        def likelihood(pose: Pose) -> float:
+            return self.score(asked.scan, pose).nearest_voxel_likelihood
+
+        return covariance.estimated(alignment, self.options, result, likelihood)
 
     def score(self, points: ArrayLike, T_map_sensor: ArrayLike) -> Score:
         """Return the score of points (N, 3) at a pose (4, 4); zero for an invalid scan or pose."""
