@@ -66,7 +66,7 @@ def unpublished(
             if type_name is None or is_pattern(written) or "/msg/" not in type_name:
                 continue
             topic = start.topic(written)
-            if topic in published or start.shown is None or start.shown.unclear:
+            if topic in published or start.shown is None or not start.shown.shows_publishers:
                 continue
             place = f"{mapfile.path}:{mapfile.document.line(('nodes', name, 'topic_to', written))}"
             advice = did_you_mean(topic, published) or _UNSEEN

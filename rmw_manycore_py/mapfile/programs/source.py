@@ -21,6 +21,10 @@ _QOS_ARGUMENT = {"publish": 2, "subscribe": 3}
 # Excludes the parts of services and actions (SetBool_Request), which are not listed as types.
 _INTERFACE = re.compile(r"\w+\.(msg|srv|action)\.[A-Z][A-Za-z0-9]*")
 _NODE_CLASSES = ("Node", "LifecycleNode")
+# Calls that take a node and create no publisher of a topic on it.
+_WITHOUT_PUBLISHER = (
+    *("rclpy.", "message_filters.", "tf2_ros.TransformListener", "tf2_ros.transform_listener."),
+)
 
 
 @dataclass
@@ -28,6 +32,7 @@ class SourceNode:
     """A node found in a source; `unclear` holds the lines of computed topics.
 
     `depths` holds the literal QoS depths, by the key that lists the topic and its name.
+    `is_shared` says whether other code gets the node, and may create publishers on it.
     """
 
     file: Path
@@ -37,6 +42,12 @@ class SourceNode:
     subscribe: dict[str, str] = field(default_factory=dict)
     unclear: list[int] = field(default_factory=list)
     depths: dict[tuple[str, str], int] = field(default_factory=dict)
+    is_shared: bool = False
+
+    @property
+    def shows_publishers(self) -> bool:
+        """Return whether `publish` has all topics that the node publishes."""
+        return not self.unclear and not self.is_shared
 
 
 @dataclass(frozen=True)
@@ -166,6 +177,7 @@ def _class_node(file: Path, cls: ast.ClassDef, names: _Names) -> SourceNode | No
     if not is_node and not any(_method(call) in _CALLS for call in calls):
         return None
     node = SourceNode(file, cls.lineno, None)
+    node.is_shared = any(_shares(call, {"self"}, names) for call in calls)
     for call in calls:
         if _is_super_init(call):
             node.name = _argument_text(call, 0, "node_name", names)
@@ -176,15 +188,38 @@ def _class_node(file: Path, cls: ast.ClassDef, names: _Names) -> SourceNode | No
 def _function_nodes(file: Path, rest: list[ast.AST], names: _Names) -> list[SourceNode]:
     """Return nodes created outside classes; topics belong to the node created before them."""
     calls = sorted(_calls(rest), key=lambda call: call.lineno)
+    variables = {
+        target.id
+        for part in rest
+        if isinstance(part, ast.Assign) and _creates_node(part.value, names)
+        for target in part.targets
+        if isinstance(target, ast.Name)
+    }
     nodes: list[SourceNode] = []
     for call in calls:
-        made = names.qualified(call.func)
-        if made.endswith("create_node") or made in ("rclpy.node.Node", "rclpy.Node"):
+        if _creates_node(call, names):
             name = _argument_text(call, 0, "node_name", names)
             nodes.append(SourceNode(file, call.lineno, name))
         elif _method(call) in _CALLS and nodes:
             _add_topics(nodes[-1], [call], names)
+        elif nodes and _shares(call, variables, names):
+            nodes[-1].is_shared = True
     return nodes
+
+
+def _creates_node(value: ast.expr, names: _Names) -> bool:
+    made = names.qualified(value.func) if isinstance(value, ast.Call) else ""
+    return made.endswith("create_node") or made in ("rclpy.node.Node", "rclpy.Node")
+
+
+def _shares(call: ast.Call, variables: set[str], names: _Names) -> bool:
+    """Return whether a call gets the node in one of the variables, and may publish with it."""
+    function = names.qualified(call.func)
+    is_quiet = function == "super" or function.startswith(_WITHOUT_PUBLISHER)
+    if is_quiet or _method(call) == "add_node":
+        return False
+    given = (*call.args, *(keyword.value for keyword in call.keywords))
+    return any(isinstance(value, ast.Name) and value.id in variables for value in given)
 
 
 def _add_topics(node: SourceNode, calls: list[ast.Call], names: _Names) -> None:

@@ -17,11 +17,15 @@ from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import Placement, as_data, check, load_mapfile, resolve
 from rmw_manycore_py.mapfile.placing.show import rules_in_words
 from rmw_manycore_py.platform.topology import Core
+from support import MAPFILES
 from support.samples.node_source import node_source
 
 pytestmark = pytest.mark.unit
 
 Write = Callable[[str], Path]
+SHIPPED = [
+    path for path in sorted(MAPFILES.glob("*.yaml")) if not path.name.endswith(".params.yaml")
+]
 LAUNCH = """\
 from launch import LaunchDescription
 from launch.actions import ExecuteProcess, RegisterEventHandler, TimerAction
@@ -161,3 +165,10 @@ def test_a_topic_that_no_source_publishes_is_named(write: Write, tmp_path: Path)
     assert crossing(write, "/other: TYPE", "publish: {/other: std_msgs/msg/String}") == ()
     (tmp_path / "talker.py").write_text(node_source(topic="sys.argv[1]"))
     assert crossing(write, "/chatters: TYPE") == (), "its source does not show all topics"
+    (tmp_path / "talker.py").write_text(f"{node_source()}        Outputs(self)\n")
+    assert crossing(write, "/chatters: TYPE") == (), "other code may publish on the node"
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_topics_of_shipped_mapfiles_have_sources(path: Path) -> None:
+    assert [notice for notice in check(path).notices if "no source publishes" in notice] == []

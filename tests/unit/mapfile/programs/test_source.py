@@ -66,6 +66,41 @@ def test_a_computed_topic_is_named_by_its_line(tmp_path: Path) -> None:
     assert (node.name, node.publish, node.unclear) == (None, {}, [6])
 
 
+@pytest.mark.parametrize(
+    ("call", "expected"),
+    [
+        ("Outputs(self, 'map')", True),
+        ("supervise(self)", True),
+        ("self._outputs = [Output(owner=self) for _ in range(2)]", True),
+        ("tf2_ros.TransformBroadcaster(self)", True),
+        ("tf2_ros.TransformListener(self._buffer, self)", False),
+        ("ActionServer(self, Fibonacci, 'fibonacci', print)", False),
+        ("executor.add_node(self)", False),
+        ("super(A, self).__init__('a')", False),
+        ("self.run()", False),
+    ],
+)
+def test_code_that_gets_the_node_may_publish_with_it(
+    tmp_path: Path, call: str, expected: bool
+) -> None:
+    (node,) = scan_text(
+        tmp_path,
+        "from rclpy.action import ActionServer\n"
+        "from rclpy.node import Node\n"
+        "import tf2_ros\n"
+        "class A(Node):\n"
+        "    def __init__(self, executor):\n"
+        f"        {call}\n",
+    )
+    assert (node.is_shared, node.shows_publishers) == (expected, not expected)
+
+
+@pytest.mark.parametrize(("call", "expected"), [("add(node)", True), ("rclpy.spin(node)", False)])
+def test_a_function_may_share_its_node(tmp_path: Path, call: str, expected: bool) -> None:
+    (node,) = scan_text(tmp_path, f"import rclpy\nnode = rclpy.create_node('one')\n{call}\n")
+    assert node.is_shared is expected
+
+
 def test_nothing_is_executed(tmp_path: Path) -> None:
     assert scan_text(tmp_path, "raise SystemExit('executed')\n") == []
 
