@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Closed loops through gaps without scans, and tunnels: errors compared with the covariance.
+"""Closed loops through gaps, tunnels and open places: errors compared with the covariance.
 
 The node's tracking aligns and judges; guesses are the last published pose moved on by odometry.
 """
@@ -15,9 +15,12 @@ import numpy as np
 
 from rmw_manycore_py.bench.ndt.gap_worlds import (
     LIDAR,
+    SQUARE_M,
     STREET_M,
     bare_tunnel,
     map_of,
+    motorway,
+    open_square,
     street_of_few_features,
 )
 from rmw_manycore_py.bench.question import Question, Run
@@ -32,6 +35,8 @@ from rmw_manycore_py.ndt.trust.looks import ScanAt
 OURS = "rmw_manycore"
 BEYOND_GAP, BEYOND_TUNNEL = "beyond 3 deviations after a gap", "beyond 3 deviations in a tunnel"
 SURE_GAP = "sure, but more than 2.5 m off, after a gap"
+BEYOND_OPEN = "beyond 3 deviations in open places"
+SURE_OPEN, ERROR_OPEN = "sure, but more than 0.5 m off, in open places", "error in open places"
 ERROR_GAP, ERROR_TUNNEL = "error after a gap", "error in a tunnel"
 ERROR_BEHIND = "error behind a tunnel"
 OPTIONS = MatcherOptions(search="radius")
@@ -43,6 +48,7 @@ STREET_LENGTH_M, TUNNEL_M = 200.0, 400.0
 TUNNEL_DRIFT, WRONG_DRIFT = 0.05, 0.3
 AHEAD_M = 12.0  # how far a guess that jumps does so
 SURE_M = 2.5  # an alignment converges from there
+MOTORWAY_M, FAST_M_S, SURE_OPEN_M = 300.0, 25.0, 0.5
 
 
 @dataclass
@@ -159,6 +165,25 @@ def through_tunnel(length_m: float) -> tuple[list[Published | None], list[Publis
     return found[:-20], found[-20:]
 
 
+def in_open_places(seeds: Sequence[int]) -> list[Published | None]:
+    """Return what is published on motorways and squares."""
+    found: list[Published | None] = []
+    for seed in seeds:
+        for street, length_m, speed_m_s in (
+            (motorway(MOTORWAY_M, seed), MOTORWAY_M, FAST_M_S),
+            (open_square(seed), SQUARE_M, SPEED_M_S),
+        ):
+            x = np.arange(10.0, length_m - 10.0, speed_m_s * PERIOD_S)
+            found += driven(
+                street,
+                map_of(street, length_m),
+                poses_along(x),
+                PERIOD_S * np.arange(len(x), dtype=np.float64),
+                lambda _, last, motion: last @ with_drift(motion, TUNNEL_DRIFT),
+            )
+    return found
+
+
 def measure(run: Run) -> list[Result]:
     """Return shares and errors."""
     if not run.wants(QUESTION.name):
@@ -168,6 +193,8 @@ def measure(run: Run) -> list[Result]:
     gaps = after_gaps((1,) if is_short else (1, 2, 3), GAPS_S[:1] if is_short else GAPS_S)
     run.note(f"{QUESTION.name}: tunnel")
     inside, behind = through_tunnel(TUNNEL_M * min(1.0, 4.0 * run.share))
+    run.note(f"{QUESTION.name}: open places")
+    is_open = in_open_places((1,) if is_short else (1, 2, 3))
     return [
         _share(BEYOND_GAP, gaps, lambda one: one.deviations > 3.0),
         _share(SURE_GAP, gaps, lambda one: one.is_sure and one.error_m > SURE_M),
@@ -175,8 +202,15 @@ def measure(run: Run) -> list[Result]:
         _share(BEYOND_TUNNEL, inside, lambda one: one.deviations > 3.0),
         _errors(ERROR_TUNNEL, inside),
         _errors(ERROR_BEHIND, behind),
-        Result("published", OURS, "%", tuple(100.0 * (one is not None) for one in gaps + inside)),
+        _share(BEYOND_OPEN, is_open, lambda one: one.deviations > 3.0),
+        _share(SURE_OPEN, is_open, lambda one: one.is_sure and one.error_m > SURE_OPEN_M),
+        _errors(ERROR_OPEN, is_open),
+        _published(gaps + inside + is_open),
     ]
+
+
+def _published(found: Sequence[Published | None]) -> Result:
+    return Result("published", OURS, "%", tuple(100.0 * (one is not None) for one in found))
 
 
 def _share(
@@ -195,6 +229,7 @@ QUESTION = Question(
     (
         Goal(BEYOND_GAP, OURS, "within", 1.0, statistic="mean"),
         Goal(BEYOND_TUNNEL, OURS, "within", 1.0, statistic="mean"),
+        Goal(BEYOND_OPEN, OURS, "within", 1.0, statistic="mean"),
     ),
     "simulated, on the calling thread",
 )

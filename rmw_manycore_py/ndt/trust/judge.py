@@ -256,5 +256,5 @@ def _weakened(weak: Weak, along: Along | None, drift_m: float) -> Along:
 
     deviation_m = after_m(along.deviation_m, is_open=weak.is_all or is_along)
     across_m = after_m(along.across_m, is_open=weak.is_all or not is_along)
-    axis = weak.axis if is_along and not along.across_m and not weak.is_all else along.axis
+    axis = weak.axis if is_along and not weak.is_all else along.axis
     return Along(axis, deviation_m, across_m)

@@ -20,8 +20,8 @@ from rmw_manycore_py.ndt.matching.alignment import Alignment
 WEAK_SPREAD_M = 0.55
 # The same of what stands above the ground: up to 0.43 on streets and in forests, 0.52 and more on
 # squares and motorways. There it holds less than this share of what seems to constrain the
-# position; elsewhere half and more.
-RAISED_SPREAD_M, RAISED_SHARE = 0.5, 0.45
+# position; elsewhere more, mostly two thirds.
+RAISED_SPREAD_M, RAISED_SHARE = 0.5, 0.4
 
 
 @dataclass(frozen=True)
