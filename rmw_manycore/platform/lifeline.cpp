@@ -122,9 +122,7 @@ std::optional<HeldLifeline> Lifelines::try_hold(uint32_t line) const {
   return try_hold(line, thread);
 }
 
-bool Lifelines::is_locked(uint32_t line) const { return thread(line) != 0; }
-
-pid_t Lifelines::thread(uint32_t line) const { return thread_in(at(line)); }
+bool Lifelines::is_locked(uint32_t line) const { return thread_in(at(line)) != 0; }
 
 bool Lifelines::is_held(uint32_t line) const {
   if (is_locked(line)) {

@@ -73,8 +73,6 @@ public:
   void release_if_abandoned(uint32_t line) const;
   /// See SharedMemory::is_file().
   bool is_file(const std::string & path) const noexcept { return memory_->is_file(path); }
-  /// Ends with the holder, or as it executes another program; 0 if the line is not locked.
-  pid_t thread(uint32_t line) const;
   /// The current or last holder of the line.
   ProcessIdentity holder(uint32_t line) const;
 

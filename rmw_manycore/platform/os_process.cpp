@@ -30,14 +30,6 @@ namespace {
 constexpr int busy_tries = 100;
 constexpr auto busy_pause = std::chrono::milliseconds(10);
 
-FileDescriptor pidfd_of(pid_t pid, unsigned int flags) {
-  FileDescriptor fd(static_cast<int>(syscall(SYS_pidfd_open, pid, flags)));
-  if (!fd && errno != ESRCH && errno != EINVAL) {
-    throw_errno("cannot watch process " + std::to_string(pid));
-  }
-  return fd;
-}
-
 std::string base_name(const std::string & path) { return path.substr(path.rfind('/') + 1); }
 
 std::vector<std::string> command_line() {
@@ -61,11 +53,12 @@ std::string docstring(const std::string & code) {
 
 }  // namespace
 
-FileDescriptor open_pidfd(pid_t pid) { return pidfd_of(pid, 0); }
-
-FileDescriptor open_pidfd_of_thread(pid_t thread) {
-  constexpr unsigned int pidfd_thread = O_EXCL;  // PIDFD_THREAD, which older headers lack
-  return pidfd_of(thread, pidfd_thread);
+FileDescriptor open_pidfd(pid_t pid) {
+  FileDescriptor fd(static_cast<int>(syscall(SYS_pidfd_open, pid, 0)));
+  if (!fd && errno != ESRCH && errno != EINVAL) {
+    throw_errno("cannot watch process " + std::to_string(pid));
+  }
+  return fd;
 }
 
 void kill_process(const FileDescriptor & pidfd) noexcept {

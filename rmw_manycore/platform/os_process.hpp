@@ -13,10 +13,6 @@ namespace manycore {
 /// A pidfd, which becomes readable when `pid` ends; empty if there is no such process.
 FileDescriptor open_pidfd(pid_t pid);
 
-/// As open_pidfd(), of a thread, which also ends as its process executes another program. Empty
-/// before Linux 6.9, too.
-FileDescriptor open_pidfd_of_thread(pid_t thread);
-
 /// Sends SIGKILL to the process of a pidfd; no other one can have taken its id.
 void kill_process(const FileDescriptor & pidfd) noexcept;
 

@@ -137,28 +137,11 @@ void Reaper::watch(uint32_t line) {
     return;
   }
   // A pid of another PID namespace may belong to a different process here.
-  const bool is_watched = holder.is_of_this_pid_namespace() &&
-                          (holder.pid == getpid() || watched_.count(holder.pid) != 0 ||
-                           watch_end_of(holder.pid, registry_.lifelines().thread(line)));
+  const bool is_watched =
+    holder.is_of_this_pid_namespace() &&
+    (holder.pid == getpid() || watched_.count(holder.pid) != 0 || watch_end_of(holder.pid));
   if (!is_watched) {
     some_unwatched_ = some_unwatched_ || registry_.lifelines().is_held(line);
-  }
-}
-
-/// A thread that held a lifeline has ended. Returns once the process has, or lives on: it left the
-/// platform, or executes another program, for which nothing but the time tells.
-void Reaper::wait_for_stragglers(pid_t pid) noexcept {
-  constexpr int enough_ms = 1000;
-  try {
-    const Lifelines & lifelines = registry_.lifelines();
-    for (uint32_t line = 0; line < lifeline_count; ++line) {
-      const ProcessIdentity holder = lifelines.holder(line);
-      if (holder.pid == pid && holder.is_of_this_pid_namespace() && !lifelines.is_locked(line)) {
-        holder.wait_for_end(enough_ms);
-        return;
-      }
-    }
-  } catch (const std::exception &) {  // no descriptor is left: is_held() waits, too
   }
 }
 
@@ -178,18 +161,14 @@ void Reaper::release_abandoned(pid_t pid) {
   }
 }
 
-bool Reaper::watch_end_of(pid_t pid, pid_t thread) {
+bool Reaper::watch_end_of(pid_t pid) {
   try {
-    FileDescriptor pidfd = open_pidfd_of_thread(thread);
-    const bool is_thread = static_cast<bool>(pidfd);
-    if (!is_thread) {
-      pidfd = open_pidfd(pid);
-    }
+    FileDescriptor pidfd = open_pidfd(pid);
     if (!pidfd) {
       return true;
     }
     add_to_poll(poll_.get(), pidfd.get(), static_cast<uint64_t>(pid));
-    watched_.emplace(pid, Watched{std::move(pidfd), is_thread});
+    watched_.emplace(pid, std::move(pidfd));
     return true;
   } catch (const Error &) {
     return false;
@@ -311,12 +290,8 @@ bool Reaper::wait_for_end(int timeout_ms) {
       some_ended = true;  // the platform is gone with its files
     } else {
       const auto pid = static_cast<pid_t>(events[i].data.u64);
-      if (watched_.at(pid).is_thread) {
-        wait_for_stragglers(pid);
-      } else {
-        release_abandoned(pid);
-      }
       watched_.erase(pid);
+      release_abandoned(pid);
       some_ended = true;
     }
   }

@@ -14,9 +14,8 @@
 
 namespace manycore {
 
-/// Second thread of a receive-thread process: waits on the pidfds of the threads that hold the
-/// lifelines of its cluster's processes and of the other clusters' receive threads (before Linux
-/// 6.9: of the processes), and frees what dead processes left.
+/// Second thread of a receive-thread process: waits on the pidfds of its cluster's processes and of
+/// the other clusters' receive threads, and frees what dead processes left.
 class Reaper {
 public:
   Reaper(Registry & registry, uint32_t cluster);
@@ -29,11 +28,6 @@ public:
   void rescan(uint32_t process = nothing) noexcept;
 
 private:
-  struct Watched {
-    FileDescriptor pidfd;
-    bool is_thread;  ///< else the process
-  };
-
   void run() noexcept;
   /// Each returns the timeout in ms after which to try again.
   int try_to_reap() noexcept;
@@ -48,8 +42,7 @@ private:
   bool is_ours(uint32_t cluster) const;
   void watch(uint32_t line);
   /// False if no file descriptor is left.
-  bool watch_end_of(pid_t pid, pid_t thread);
-  void wait_for_stragglers(pid_t pid) noexcept;
+  bool watch_end_of(pid_t pid);
   void release_abandoned(pid_t pid);
   int timeout_ms() const noexcept;
   /// True if a watched process ended or files were removed; false on other events and on timeout.
@@ -60,7 +53,7 @@ private:
   FileDescriptor poll_;   ///< epoll
   FileDescriptor event_;  ///< eventfd: rescan() was called
   FileDescriptor files_;  ///< inotify: files of the platform were removed
-  std::map<pid_t, Watched> watched_;
+  std::map<pid_t, FileDescriptor> watched_;
   bool some_unwatched_ = false;  ///< in another PID namespace, or no file descriptor was left
   bool is_any_in_use_ = false;   ///< some memory cannot be freed yet: no event signals when it can
   std::mutex mutex_;             ///< guards the following two
