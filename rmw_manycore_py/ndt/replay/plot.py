@@ -21,6 +21,7 @@ SCORES = {
     "transform_probability": ("transform probability", "tab:green"),
 }
 GAP = "tab:red"
+LEGEND_PT = 26  # height of a legend of one row
 
 
 def plot(tally: Tally, map_points: Points | None, path: Path) -> None:
@@ -64,10 +65,9 @@ def _draw_map(figure: Any, axes: Any, tally: Tally, map_points: Points | None) -
     lost = np.array([row.reference[:2, 3] for row in tally.rows if row.result is None])
     if len(lost):
         axes.plot(*lost.T, "x", color=GAP, label="no pose")
-    axes.set(xlabel="x [m]", ylabel="y [m]", title="map and path", aspect="equal")
-    figure.legend(
-        *axes.get_legend_handles_labels(), loc="outside lower left", ncols=3, frameon=False
-    )
+    axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    axes.set_title("map and path", pad=LEGEND_PT)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
 
 
 def _draw_errors(axes: Any, tally: Tally, along_m: Matrix) -> None:

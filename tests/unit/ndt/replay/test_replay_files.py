@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from pathlib import Path
 
 import numpy as np
@@ -103,6 +104,25 @@ def test_pictures_are_drawn_with_gaps_and_without_answers(tally, tmp_path):
     for row in tally.rows:
         row.result = None
     write(tally, plot=tmp_path / "none.svg", picture=tmp_path / "none3.svg")
+
+
+def number_pairs(text: str) -> list[tuple[float, float]]:
+    return [(float(x), float(y)) for x, y in re.findall(r"(-?[\d.]+)[ ,](-?[\d.]+)", text)]
+
+
+@pytest.mark.parametrize("way", [(8.0, 0.2), (0.2, 8.0)], ids=["flat", "tall"])
+def test_the_legend_of_the_map_is_above_it(tally, tmp_path, way):
+    for index, row in enumerate(tally.rows):
+        row.reference[:2, 3] = np.array(way) * index
+    write(tally, plot=tmp_path / "plot.svg")
+    drawn = (tmp_path / "plot.svg").read_text()
+    corners = number_pairs(re.search(r'id="patch_2">\s*<path d="([^"]*)"', drawn).group(1))
+    (left, bottom), (right, top) = corners[0], corners[2]
+    place = re.search(r"<!-- ndt_pose -->\s*<g [^>]*translate\(([^)]*)\)", drawn).group(1)
+    ((x, y),) = number_pairs(place)
+    assert bottom > top  # as an SVG counts
+    assert top - 20.0 < y < top
+    assert left - 50.0 < x < right + 50.0
 
 
 def test_progress_is_in_lines_where_there_is_no_terminal(monkeypatch, capsys):
