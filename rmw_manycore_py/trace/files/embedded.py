@@ -14,12 +14,11 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, NonNegativeInt, ValidationError
 
 from rmw_manycore_py.errors import FileError, Problem, invalid_field, what_is_wrong
-from rmw_manycore_py.platform.environment import MAX_CLUSTER
 from rmw_manycore_py.trace.events import EVENT, Endpoint, Process, Thread, Trace
 
 VERSION = 1
 _QUICKLY = 1  # zlib level; takes a tenth of the default's time
-_Cluster = Annotated[int, Field(ge=0, le=MAX_CLUSTER)]  # 0: none
+_Cluster = Annotated[int, Field(ge=0, le=64)]  # as many as a platform may have; 0: none
 
 
 class _Strict(BaseModel):
