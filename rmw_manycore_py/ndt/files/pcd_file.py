@@ -17,7 +17,14 @@ import numpy as np
 
 from rmw_manycore_py.errors.missing_library import LZF, require
 from rmw_manycore_py.ndt.files.pcd_header import PADDING, PcdHeader, read_header
-from rmw_manycore_py.ndt.files.positions import Column, axes_in, read_data, stacked, write_binary
+from rmw_manycore_py.ndt.files.positions import (
+    Column,
+    axes_in,
+    read_data,
+    stacked,
+    write_binary,
+    wrong_word,
+)
 from rmw_manycore_py.ndt.geometry.arrays import Points
 
 HEADER = """VERSION 0.7
@@ -48,12 +55,14 @@ def read_pcd(path: Path) -> Points:
 
 
 def _ascii(file: IO[bytes], header: PcdHeader, axes: list[int]) -> list[Column]:
+    begin = file.tell()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of no data at all
         try:
             table = np.loadtxt(file, comments=None, max_rows=header.points, ndmin=2)
         except ValueError as error:
-            raise ValueError("expected a line of numbers for each of its points") from error
+            other = "expected a line of numbers for each of its points"
+            raise ValueError(wrong_word(file, begin) or other) from error
     if table.shape[0] < header.points:
         raise ValueError(f"its {header.points} points need as many lines, found {table.shape[0]}")
     if table.shape[1] != header.point_numbers:

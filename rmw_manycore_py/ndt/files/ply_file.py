@@ -25,6 +25,7 @@ from rmw_manycore_py.ndt.files.positions import (
     read_data,
     stacked,
     write_binary,
+    wrong_word,
 )
 from rmw_manycore_py.ndt.geometry.arrays import Points
 
@@ -138,12 +139,14 @@ def _number(word: str) -> str:
 
 
 def _ascii(file: IO[bytes], header: _Header, axes: list[int]) -> list[Column]:
+    begin = file.tell()
     with warnings.catch_warnings():
-        warnings.simplefilter("error")  # for words that are not numbers
+        warnings.simplefilter("error")  # of numpy before 2.3, for words that are not numbers
         try:
             found = np.fromstring(file.read().decode("ascii"), sep=" ")
-        except DeprecationWarning as error:
-            raise ValueError("it is broken: a word among its points is no number") from error
+        except (DeprecationWarning, ValueError) as error:
+            unknown = "it is broken: a word among its points is no number"
+            raise ValueError(wrong_word(file, begin) or unknown) from error
     at = 0
     for element in header.elements[:-1]:
         at = _after(element, found, at)

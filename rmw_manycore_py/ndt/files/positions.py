@@ -49,9 +49,31 @@ def write_binary(path: Path, header: str, points: Points) -> None:
 
 def count_in(word: str, what: str) -> int:
     """Return a count of a header; raise ValueError, which names `what`, if it is none."""
-    if not word.isdecimal() or len(word) > _MAX_DIGITS:
+    digits = word.removeprefix("-")
+    if not digits.isdecimal():
         raise broken(f"{what} is not a number: '{word[:40]}'")
+    if digits != word:
+        raise broken(f"{what} is negative: {word[:40]}")
+    if len(word) > _MAX_DIGITS:
+        raise broken(f"{what} is too large: {word[:40]}")
     return int(word)
+
+
+def wrong_word(file: IO[bytes], begin: int) -> str:
+    """Return the first word from an offset on that is no number, and its line; "" if none is."""
+    file.seek(0)
+    first = 1 + file.read(begin).count(b"\n")
+    for number, line in enumerate(file, first):
+        for word in line.split():
+            try:
+                float(word)
+            except ValueError:
+                return f"expected numbers in line {number}, found '{_text(word)}'"
+    return ""
+
+
+def _text(word: bytes) -> str:
+    return word[:40].decode("ascii", "replace")
 
 
 def broken(problem: str) -> ValueError:

@@ -14,6 +14,7 @@ import numpy as np
 import yaml
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.errors.yaml_faults import yaml_fault
 from rmw_manycore_py.ndt.files.cloud_file import suffix_of
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.maps.map_file import SUFFIXES, read_points, write_points
@@ -147,8 +148,8 @@ def _listed(metadata: Path, folder: Path) -> list[Tile]:
         corners = {name: (float(x), float(y)) for name, (x, y) in table.items()}
     except (yaml.YAMLError, AttributeError, KeyError, TypeError, ValueError) as error:
         raise ManycoreError(
-            f"{metadata}: expected x_resolution, y_resolution and FILE: [x, y] for each tile "
-            f"({error!r})",
+            f"{metadata}: expected x_resolution, y_resolution and FILE: [x, y] for each tile, "
+            f"found {yaml_fault(error)}",
             EXIT_BAD_INPUT,
         ) from error
     tiles = [

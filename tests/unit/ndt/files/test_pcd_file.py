@@ -142,3 +142,21 @@ def test_broken_files(tmp_path, content):
     (tmp_path / "map.pcd").write_bytes(content)
     with pytest.raises(ManycoreError, match=r"map\.pcd: .{10}"):
         read_points(tmp_path / "map.pcd")
+
+
+@pytest.mark.parametrize(
+    ("content", "fault"),
+    [
+        (header_of(PLAIN, "binary", width=-5), "header is broken: WIDTH is negative: -5"),
+        (
+            header_of(PLAIN, "binary", width="five"),
+            "header is broken: WIDTH is not a number: 'five'",
+        ),
+        (header_of(PLAIN, "binary", points=10**25), f"POINTS is too large: {10**25}"),
+        (header_of(PLAIN, "ascii") + b"1 2 3\n1 2 three\n", "numbers in line 13, found 'three'"),
+    ],
+)
+def test_a_fault_is_named_with_its_place(tmp_path, content, fault):
+    (tmp_path / "map.pcd").write_bytes(content)
+    with pytest.raises(ManycoreError, match=f"{fault}$"):
+        read_points(tmp_path / "map.pcd")

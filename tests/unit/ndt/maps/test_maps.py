@@ -145,6 +145,12 @@ def test_a_single_file_is_everywhere(tmp_path):
     assert len(open_map(tmp_path / "map.npz").around(1e6, 1e6, 1.0)[1]) == 5000
 
 
+ASCII_PLY = b"ply\nformat ascii 1.0\nelement vertex 2\n" + b"".join(
+    f"property float {axis}\n".encode() for axis in "xyz"
+)
+ASCII_PLY += b"end_header\n"
+
+
 @pytest.mark.parametrize(
     ("name", "content", "words"),
     [
@@ -159,6 +165,8 @@ def test_a_single_file_is_everywhere(tmp_path):
         ("map.ply", b"ply\nelement vertex x\nend_header\n", "a count is not a number: 'x'"),
         ("map.ply", b"ply\nformat ascii 1.0\nend_header\n", "no points"),
         ("map.ply", b"ply\nformat ascii 1.0\n", "no points"),
+        ("map.ply", ASCII_PLY + b"1 2 3\na b c\n", "expected numbers in line 9, found 'a'"),
+        ("map.ply", ASCII_PLY + b"1 2 3\n4 \xff 6\n", "expected numbers in line 9, found"),
     ],
 )
 def test_broken_maps(tmp_path, name, content, words):
@@ -289,7 +297,8 @@ def folder_with(tmp_path: Path, text: str | None) -> Path:
         ("x_resolution: 20", "expected x_resolution"),
         ("[1, 2]", "expected x_resolution"),
         ("x_resolution: 1\ny_resolution: 1\na.pcd: [0, 0]", "tile a.pcd is missing"),
-        ("x: [", "expected x_resolution"),
+        ("x: [", "expected x_resolution.* found no valid YAML in line 1$"),
+        ("y_resolution: 20", "expected x_resolution.* found no key 'x_resolution'$"),
     ],
 )
 def test_broken_folders(tmp_path, text, words):
