@@ -13,6 +13,7 @@ import yaml
 
 from rmw_manycore_distribution import NAME
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.errors.yaml_faults import yaml_fault
 from rmw_manycore_py.native._transport import Qos
 from rmw_manycore_py.recording.definitions import NO_SCHEMA, Schema
 from rmw_manycore_py.recording.offers import profiles_of
@@ -118,7 +119,7 @@ def read_metadata(folder: Path) -> dict[str, Any] | None:
     except Exception as error:  # numbers and dates of YAML raise errors of their own
         raise ManycoreError(
             f"{path}: expected '{_ROOT}' with 'relative_file_paths', as rosbag2 writes it, found "
-            f"something else ({error!r}); without this file the recording is read by itself",
+            f"{yaml_fault(error)}; without this file the recording is read by itself",
             EXIT_BAD_INPUT,
         ) from error
     assert isinstance(found, dict)

@@ -17,9 +17,15 @@ from typing import Any
 
 import numpy as np
 
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, what_is_wrong
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.errors.missing_library import ROSBAGS, require
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
+from rmw_manycore_py.ndt.recordings.bag_faults import (
+    METADATA,
+    bag_fault,
+    damage,
+    metadata_fault,
+)
 from rmw_manycore_py.ndt.recordings.bag_poses import poses_of
 from rmw_manycore_py.ndt.recordings.connections import connections_of
 from rmw_manycore_py.ndt.recordings.cut_bag import open_cut_bag
@@ -29,7 +35,6 @@ from rmw_manycore_py.ndt.recordings.recording import Recording
 
 CLOUD = "sensor_msgs/msg/PointCloud2"
 SUFFIXES = (".bag", ".mcap", ".db3")
-METADATA = "metadata.yaml"
 
 
 def is_bag(path: Path) -> bool:
@@ -147,7 +152,7 @@ def _bad_bag(what: str) -> Iterator[None]:
     except ManycoreError:
         raise
     except Exception as error:  # rosbags does not document its errors
-        raise ManycoreError(f"{what}: {error!r}", EXIT_BAD_INPUT) from error
+        raise ManycoreError(f"{what}: {damage(error)}", EXIT_BAD_INPUT) from error
 
 
 def _opened(path: Path) -> tuple[Any, str]:
@@ -164,11 +169,15 @@ def _opened(path: Path) -> tuple[Any, str]:
         )
         reader.open()
     except Exception as error:  # rosbags does not document its errors
+        described = metadata_fault(path)
         with _bad_bag(f"{path}: no bag"):
             cut_bag = open_cut_bag(files)
-            if cut_bag is None:
-                raise
-        return cut_bag, f"its end is missing ({what_is_wrong(error)}): read up to there"
+        if cut_bag is None:
+            why = described or bag_fault(path, files, error)
+            raise ManycoreError(f"{path}: no bag: {why}", EXIT_BAD_INPUT) from error
+        if described:
+            return cut_bag, f"{described}: its files are read"
+        return cut_bag, f"its end is missing ({bag_fault(path, files, error)}): read up to there"
     return reader, "" if is_complete else f"it has no {METADATA}: its files are read"
 
 
