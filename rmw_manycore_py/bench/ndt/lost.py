@@ -81,7 +81,7 @@ def searched(matcher: Matcher, lost: Lost) -> Search:
     after_s = [process_cpu_s(pid) for pid in matcher.worker_pids]
     workers_s = [after - before for after, before in zip(after_s, before_s, strict=True)]
     own_s, wall_s = time.process_time() - own_s, time.perf_counter() - begin_s
-    T = None if found.why_unclear(level) else found.places[0].T_map_sensor
+    T = None if found.why_unclear(level, region) else found.places[0].T_map_sensor
     return Search(T, own_s + sum(workers_s), own_s + max(workers_s), wall_s)
 
 

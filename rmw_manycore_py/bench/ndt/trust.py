@@ -191,7 +191,7 @@ def _found_by_search(shares: dict[str, Shares], helpers: Helpers, case: Case) ->
     """Return whether a global search finds a unique place, and whether it is the right one."""
     region = Region(case.guess, GLOBAL_M, any_yaw=True)
     found = helpers.call(searched, case.drive, case.index, region)
-    is_clear = not found.why_unclear(_level_of(case, shares[case.drive]))
+    is_clear = not found.why_unclear(_level_of(case, shares[case.drive]), region)
     return is_clear, is_clear and _is_there(found, case)
 
 
@@ -273,7 +273,7 @@ def is_missed(case: Case, shares: Shares, helpers: Helpers, *, searches: bool) -
         region = Region(case.guess, radius_m, any_yaw)
         found = helpers.call(searched, case.drive, case.index, region)
         level = _level_of(case, shares)
-        if not found.why_unclear(level, other, only_confirms=not any_yaw):
+        if not found.why_unclear(level, region, other, is_first=True):
             return not _is_there(found, case)
         other = found
     return True

@@ -63,7 +63,7 @@ class Recovery:
         self._searched: _Scan | None = None
         self._region: Region | None = None
         self._is_first = False
-        self._before: Found | None = None  # of the search before
+        self._before: tuple[Found, _Scan] | None = None  # of the search before
         self._refused = 0
         self._searches = 0
         self.step = Step.TRACKING
@@ -147,9 +147,9 @@ class Recovery:
         if scan is None or self.step is Step.TRACKING:  # recovered without it
             return False
         assert self._region is not None
-        only_confirms = self._is_first and not self._region.any_yaw
-        unclear = found.why_unclear(judge.level, self._before, only_confirms=only_confirms)
-        self._before = found
+        other = self._found_before(scan)
+        unclear = found.why_unclear(judge.level, self._region, other, is_first=self._is_first)
+        self._before = found, scan
         self.note = f"{self.step.value}: {unclear or 'clear'}"
         if unclear:
             return False
@@ -162,6 +162,15 @@ class Recovery:
         )
         judge.begin_at(Believed(scan.stamp_s, best.T_map_sensor, scan.guess))
         return True
+
+    def _found_before(self, scan: _Scan) -> Found | None:
+        """Return what the search before found, moved on like the guesses."""
+        if self._before is None:
+            return None
+        found, then = self._before
+        if scan.guess is None or then.guess is None:
+            return found
+        return found.moved(poses.inverse(then.guess) @ scan.guess)
 
     def close(self) -> None:
         """Stop the search."""

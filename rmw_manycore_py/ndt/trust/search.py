@@ -10,7 +10,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -66,30 +66,43 @@ class Found:
         return _lead([place.known_fit for place in self.places])
 
     def why_unclear(
-        self, level: ScoreLevel, other: Found | None = None, *, only_confirms: bool = False
+        self,
+        level: ScoreLevel,
+        region: Region,
+        other: Found | None = None,
+        *,
+        is_first: bool = False,
     ) -> str:
         """Return why the best place is not accepted; "" if it is.
 
         The right place may be outside of the region, and a wrong one the best. So the best must be
-        explained like a first pose, or have 95 % of its fit: it stands out. Where another search
-        leads to it, too, it may be explained a little less.
+        explained like a first pose, or fit as well; nearly as well in a region of any yaw, which is
+        large enough to contain places like it, or where another search leads to it, too.
 
         :param other: what the search of another region found for this vehicle.
-        :param only_confirms: accept nothing that the other search does not lead to.
+        :param is_first: no pose was believed: a search of headings around the guess only confirms.
         """
         if not self.places:
             return "the scan fits nowhere"
         best = self.places[0]
         is_confirmed = other is not None and other.leads_to(best)
         least = level.of_confirmed if is_confirmed else level.of_explained
-        fits = best.fit > ONLY_SHARE * level.of_first
-        if not (fits or best.explained_score > least):
+        min_fit = level.of_first * (ONLY_SHARE if region.any_yaw or is_confirmed else 1.0)
+        if not (best.fit > min_fit or best.explained_score > least):
             return f"the best explained score {best.explained_score:.3f} is below {least:.3f}"
         if self.margin < MARGIN:
             second = self.places[1]
             apart_m = poses.distance_m(best.T_map_sensor, second.T_map_sensor)
             return f"{apart_m:.1f} m apart it fits equally well, within {100 * self.margin:.1f} %"
-        return "in a larger region it is not the best" if only_confirms and not is_confirmed else ""
+        if is_first and not (region.any_yaw or is_confirmed):
+            return "in a larger region it is not the best"
+        return ""
+
+    def moved(self, motion: Pose) -> Found:
+        """Return the places of the vehicle after a motion (4, 4)."""
+        return Found(
+            tuple(replace(one, T_map_sensor=one.T_map_sensor @ motion) for one in self.places)
+        )
 
     def leads_to(self, place: Alignment) -> bool:
         """Return whether a place is the best of these, and stands out."""

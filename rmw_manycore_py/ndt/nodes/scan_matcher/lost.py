@@ -28,6 +28,6 @@ def search_region(
         memory.give_back()
     level = ScoreLevel()
     level.map_changed(matcher.map.own_likelihood)
-    if unclear := found.why_unclear(level):
+    if unclear := found.why_unclear(level, region):
         raise Rejected(f"searching within {region.radius_m:.0f} m: {unclear}")
     return found.places[0]

@@ -19,6 +19,7 @@ from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import scan_points
 from rmw_manycore_py.ndt.matching.alignment import Alignment
+from rmw_manycore_py.ndt.trust import recovery as recovery_module
 from rmw_manycore_py.ndt.trust.judge import PoseJudge
 from rmw_manycore_py.ndt.trust.recovery import Recovery, Step
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
@@ -156,7 +157,7 @@ def lost_in(matcher: SerialMatcher, scan: np.ndarray) -> tuple[Found, str]:
     """Search the whole map; return also why the best place is not accepted."""
     region = Region(np.eye(4), np.inf, any_yaw=True)
     found = search(matcher, scan_points(scan), region)
-    return found, found.why_unclear(judge_of(matcher.map).level)
+    return found, found.why_unclear(judge_of(matcher.map).level, region)
 
 
 @pytest.mark.parametrize(("index", "ahead_m"), [(3, 30.0), (5, -30.0), (61, 30.0)])
@@ -165,7 +166,7 @@ def test_a_search_that_does_not_reach_the_scan_finds_nothing(drives, matcher, in
     centre = drives[0].poses[index] @ pose(ahead_m, 0.0, 0.0, 0.0, 0.0, 0.0)
     region = Region(centre, 20.0, any_yaw=True)
     found = search(matcher, scan_points(drives[0].scan(index)), region)
-    assert "explained score" in found.why_unclear(judge_of(matcher.map).level)
+    assert "explained score" in found.why_unclear(judge_of(matcher.map).level, region)
 
 
 def test_a_scan_is_found_without_a_guess(drives, matcher):
@@ -220,8 +221,12 @@ def found_at(*places: tuple[float, float]) -> Found:
 def test_a_second_search_confirms_a_first_pose(wide, near, why):
     level = ScoreLevel()
     level.map_changed(1.0)
-    assert "below" in found_at(*wide).why_unclear(level)
-    unclear = found_at(*near).why_unclear(level, found_at(*wide), only_confirms=True)
+    everywhere, around = (
+        Region(np.eye(4), 20.0, any_yaw=True),
+        Region(np.eye(4), 5.0, any_yaw=False),
+    )
+    assert "below" in found_at(*wide).why_unclear(level, everywhere)
+    unclear = found_at(*near).why_unclear(level, around, found_at(*wide), is_first=True)
     assert why in unclear
     assert bool(why) == bool(unclear)
 
@@ -232,11 +237,20 @@ def test_around_a_first_guess_a_search_only_confirms(world, recovery):
     recovery.refused(1.0, scan, TRUTH, TRUTH, is_first=True)
     wait_until(lambda: recovery.take(judge), "the wide search has found it")
     recovery.step, recovery._searches = Step.TRACKING, 1
-    recovery._before = found_at((30.0, 1.0))  # as if that had led elsewhere
+    then = recovery_module._Scan(1.0, scan, TRUTH)
+    recovery._before = found_at((30.0, 1.0)), then  # as if that had led elsewhere
     recovery.refused(2.0, scan, TRUTH, TRUTH, is_first=True)
     assert recovery.step is Step.AROUND
     wait_until(lambda: recovery.take(judge) or "searching" in recovery.note, "its end")
     assert "in a larger region it is not the best" in recovery.note
+
+
+def test_a_first_pose_is_confirmed_while_the_vehicle_drives():
+    motion = pose(3.0, 0.0, 0.0, 0.0, 0.0, 0.2)
+    before, now = found_at((5.0, 0.86), (20.0, 0.5)), found_at((8.0, 0.86)).places[0]
+    now = replace(now, T_map_sensor=now.T_map_sensor @ pose(0.0, 0.0, 0.0, 0.0, 0.0, 0.2))
+    assert before.moved(motion).leads_to(now)
+    assert not before.leads_to(now)
 
 
 def shared_names() -> Counter[str]:
