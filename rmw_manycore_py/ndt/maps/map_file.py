@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Point-cloud map files: PCD, PLY and npz (the format of recordings).
+"""Point-cloud map files: PCD, PLY and npz (`points` alone, or the arrays of a recording).
 
 Points keep the precision of the file: float64 or float32 (precision.py).
 """
@@ -7,8 +7,10 @@ Points keep the precision of the file: float64 or float32 (precision.py).
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from rmw_manycore_py.ndt.files.cloud_file import load_open3d, map_error, read_cloud, suffix_of
 from rmw_manycore_py.ndt.files.pcd_file import write_pcd
@@ -16,7 +18,7 @@ from rmw_manycore_py.ndt.files.ply_file import write_ply
 from rmw_manycore_py.ndt.files.unreadable import UNREADABLE, why_unreadable
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.precision import needs_doubles
-from rmw_manycore_py.ndt.recordings.recording import load_recording
+from rmw_manycore_py.ndt.recordings.recording import RECORDING_ARRAYS, load_arrays, recording_of
 
 SUFFIXES = (".pcd", ".ply", ".npz")
 
@@ -24,7 +26,7 @@ SUFFIXES = (".pcd", ".ply", ".npz")
 def read_points(path: Path, leaf_m: float = 0.0) -> Points:
     """Return the finite points (N, 3) of a map; downsampled to voxels of `leaf_m` if non-zero.
 
-    An npz file is a recording whose scans are accumulated with their poses.
+    The scans of a recording (npz) are accumulated with their poses.
 
     :raises ManycoreError: if the file is missing, broken, empty or of another kind.
     """
@@ -54,12 +56,26 @@ def write_points(path: Path, points: Points) -> None:
 
 def _write_npz(path: Path, points: Points) -> None:
     """Write a recording of one scan with the sensor at the map's origin."""
-    offsets = np.array([0, len(points)])
-    np.savez_compressed(path, points=points, offsets=offsets, poses=np.eye(4)[None], note="map")
+    offsets, poses = _of_one_scan(len(points))
+    np.savez_compressed(path, points=points, offsets=offsets, poses=poses, note="map")
+
+
+def _of_one_scan(points: int) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+    """Return offsets and poses of a recording of one scan, in the map frame."""
+    return np.array([0, points]), np.eye(4)[None]
 
 
 def _read_npz(path: Path) -> Points:
-    recording = load_recording(path)
+    arrays = load_arrays(path)
+    found = RECORDING_ARRAYS & arrays.keys()
+    if found == {"points"}:
+        count = len(np.atleast_1d(arrays["points"]))
+        arrays["offsets"], arrays["poses"] = _of_one_scan(count)
+    elif found != RECORDING_ARRAYS:
+        missing = ", ".join(sorted(RECORDING_ARRAYS - found))
+        both = "points (N, 3) [m, map frame] alone, or points, offsets and poses of a recording"
+        raise map_error(path, f"it has no array {missing}: expected {both}")
+    recording = recording_of(path, arrays)
     try:
         return recording.accumulated(range(len(recording)))
     except UNREADABLE as error:

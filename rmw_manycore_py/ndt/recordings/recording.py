@@ -14,7 +14,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
@@ -168,12 +168,21 @@ def stored_scans(scans: Sequence[Points], scale_m: float) -> StoredScans:
 
 def load_recording(path: Path) -> Recording:
     """Read a recording; raise ManycoreError with the problem if it is invalid."""
+    return recording_of(path, load_arrays(path))
+
+
+def load_arrays(path: Path) -> dict[str, npt.NDArray[Any]]:
+    """Return the arrays of an npz file by name; raise ManycoreError if it cannot be read."""
     try:
         with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
             # Entries that are no arrays are loaded as bytes.
-            arrays = {name: np.asarray(file[name]) for name in file.files}
+            return {name: np.asarray(file[name]) for name in file.files}
     except UNREADABLE as error:
         raise _bad(path, f"cannot be read as npz: {why_no_arrays(error)}") from error
+
+
+def recording_of(path: Path, arrays: Mapping[str, npt.NDArray[Any]]) -> Recording:
+    """Return the recording in the arrays of a file; raise ManycoreError if they hold none."""
     missing = RECORDING_ARRAYS - arrays.keys()
     if missing:
         raise _bad(path, f"has no array {', '.join(sorted(missing))}")
@@ -195,7 +204,7 @@ def load_recording(path: Path) -> Recording:
         raise _bad(path, why_unreadable(error)) from error
 
 
-def _problem(arrays: dict[str, npt.NDArray[Any]]) -> str | None:
+def _problem(arrays: Mapping[str, npt.NDArray[Any]]) -> str | None:
     """Return the first problem with the shapes of the arrays; None if there is none."""
     points, poses, offsets = arrays["points"], arrays["poses"], arrays["offsets"]
     stamps, scale = arrays.get("stamps", np.zeros(0)), arrays.get("scale_m")

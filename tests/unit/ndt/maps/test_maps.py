@@ -324,6 +324,31 @@ def test_whole_numbers_of_millimetres(tmp_path):
     np.testing.assert_allclose(found, [[500_000.001, 5_000_000.003, 100.0]], atol=1e-6)
 
 
+@pytest.mark.parametrize("scale", [{}, {"scale_m": 0.5}])
+def test_an_npz_file_of_points_alone_is_a_map(tmp_path, scale):
+    points = cloud(100)
+    points[7, 1] = np.nan
+    np.savez(tmp_path / "map.npz", points=points, **scale)
+    expected = np.delete(points, 7, axis=0) * np.float32(scale.get("scale_m", 1.0))
+    np.testing.assert_array_equal(read_points(tmp_path / "map.npz"), expected)
+
+
+@pytest.mark.parametrize(
+    ("arrays", "words"),
+    [
+        ({"cats": np.zeros(3)}, "it has no array offsets, points, poses: expected points"),
+        ({"points": np.zeros((5, 3)), "poses": np.eye(4)[None]}, "it has no array offsets: exp"),
+        ({"points": np.zeros(15)}, "points are not"),
+        ({"points": np.float32(1.0)}, "points are not"),
+        ({"points": np.zeros((0, 3))}, "it has no points"),
+    ],
+)
+def test_npz_files_that_are_no_maps(tmp_path, arrays, words):
+    np.savez(tmp_path / "map.npz", **arrays)
+    with pytest.raises(ManycoreError, match=rf"map\.npz: .*{words}"):
+        read_points(tmp_path / "map.npz")
+
+
 def test_a_recording_there_and_back(tmp_path):
     scans = [cloud(100) / 2, cloud(50) / 2]
     two = np.stack([np.eye(4), from_xyz_rpy((1, 2, 3))])
