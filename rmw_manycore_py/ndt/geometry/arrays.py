@@ -33,7 +33,7 @@ def map_points(points: ArrayLike) -> Matrix:
 
 def pose_matrix(pose: ArrayLike) -> Pose:
     """Return a transform as a contiguous (4, 4) array; the values are not checked."""
-    matrix = np.ascontiguousarray(pose, dtype=np.float64)
+    matrix = np.ascontiguousarray(real_numbers("pose", pose, "(4, 4)"), dtype=np.float64)
     if matrix.shape != (4, 4):
         raise ManycoreError(f"pose: expected shape (4, 4), found {matrix.shape}", EXIT_BAD_INPUT)
     return matrix
@@ -52,8 +52,25 @@ def pose_error(matrix: Pose) -> str:
     return ""
 
 
+def real_numbers(name: str, value: ArrayLike, shape: str) -> NDArray[Any]:
+    """Return an array; raise ManycoreError unless its elements are real numbers.
+
+    numpy would also accept strings and complex numbers. The shape is only named in the error.
+    """
+    expected = f"{name}: expected real numbers of shape {shape}"
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise ManycoreError(
+            f"{expected}, found rows of different lengths", EXIT_BAD_INPUT
+        ) from error
+    if array.dtype.kind not in "fiu":
+        raise ManycoreError(f"{expected}, found elements of {array.dtype}", EXIT_BAD_INPUT)
+    return array
+
+
 def _of_three_columns(points: ArrayLike) -> Points:
-    array = np.asarray(points)
+    array = real_numbers("points", points, "(N, 3)")
     if array.size == 0:
         return np.zeros((0, 3))
     if array.ndim != 2 or array.shape[1] != 3:

@@ -5,11 +5,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.geometry.arrays import pose_error, pose_matrix
+from rmw_manycore_py.ndt.geometry.arrays import pose_error, pose_matrix, real_numbers
 from rmw_manycore_py.ndt.matching.alignment import Alignment
 from rmw_manycore_py.ndt.matching.matcher import SerialMatcher
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
@@ -38,7 +37,7 @@ def align(
     :raises ManycoreError: if an argument has another shape or is not numeric, if the guess is not a
         pose, if no voxel of the map has enough points, or if the map has other options.
     """
-    guess = pose_matrix(_numbers("T_map_guess", T_map_guess, "(4, 4)"))
+    guess = pose_matrix(real_numbers("T_map_guess", T_map_guess, "(4, 4)"))
     if wrong := pose_error(guess):
         raise ManycoreError(f"T_map_guess: it {wrong}", EXIT_BAD_INPUT)
     points = _points("scan", scan)
@@ -50,21 +49,7 @@ def align(
 
 
 def _points(name: str, value: ArrayLike) -> NDArray[Any]:
-    points = _numbers(name, value, "(N, 3)")
+    points = real_numbers(name, value, "(N, 3)")
     if points.ndim != 2 or points.shape[1] != 3:
         raise ManycoreError(f"{name}: expected shape (N, 3), found {points.shape}", EXIT_BAD_INPUT)
     return points
-
-
-def _numbers(name: str, value: ArrayLike, shape: str) -> NDArray[Any]:
-    """Return an array of real numbers: numpy would also accept strings and complex numbers."""
-    expected = f"{name}: expected real numbers of shape {shape}"
-    try:
-        array = np.asarray(value)
-    except ValueError as error:
-        raise ManycoreError(
-            f"{expected}, found rows of different lengths", EXIT_BAD_INPUT
-        ) from error
-    if array.dtype.kind not in "fiu":
-        raise ManycoreError(f"{expected}, found elements of {array.dtype}", EXIT_BAD_INPUT)
-    return array

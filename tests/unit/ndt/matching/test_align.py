@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -88,3 +89,35 @@ def test_what_cannot_be_aligned_is_an_error(
 ) -> None:
     with pytest.raises(ManycoreError, match=problem):
         ndt.align(target, scan, guess)
+
+
+MATCHER = ndt.SerialMatcher()
+MATCHER.set_map(ndt.VoxelMap.from_points(MAP))
+
+
+@pytest.mark.parametrize(
+    ("value", "found"),
+    [
+        ([["a", "b", "c"]], "elements of <U1"),
+        ("here", "elements of <U4"),
+        ([[1.0, 2.0], [3.0]], "rows of different lengths"),
+        ([[1.0, None, 3.0]], "elements of object"),
+        ([[10**400, 1, 2]], "elements of object"),
+        (SCAN.astype(complex), "elements of complex"),
+    ],
+)
+@pytest.mark.parametrize(
+    ("call", "expected"),
+    [
+        (ndt.VoxelMap.from_points, r"points: expected real numbers of shape \(N, 3\)"),
+        (lambda value: MATCHER.align(value, GUESS), r"points: expected .* shape \(N, 3\)"),
+        (lambda value: MATCHER.align(SCAN, value), r"pose: expected .* shape \(4, 4\)"),
+        (lambda value: ndt.align(value, SCAN, GUESS), r"target: expected .* shape \(N, 3\)"),
+    ],
+    ids=["map", "scan", "guess", "align"],
+)
+def test_arrays_of_no_numbers_are_an_error_of_ours(
+    call: Callable[[Any], Any], value: Any, expected: str, found: str
+) -> None:
+    with pytest.raises(ManycoreError, match=f"{expected}, found {found}"):
+        call(value)
