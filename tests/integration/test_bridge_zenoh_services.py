@@ -46,6 +46,7 @@ def test_a_service_of_the_platform_is_called(zenoh) -> None:
 def test_a_service_outside_is_called(zenoh) -> None:
     zenoh.run(zenoh.route("outward", "/lamp", SET_BOOL))
     server = zenoh.outside(sdk_serve, True)
+    server.wait_for("^serving$")  # it announces its service before it has one
     caller = zenoh.inside(call, 3)
     for expected in ("True", "False", "True"):
         caller.wait_for(f"^answer {expected} served$")
@@ -56,6 +57,7 @@ def test_a_service_outside_is_called(zenoh) -> None:
 def test_a_server_outside_that_is_killed(zenoh) -> None:
     zenoh.run(zenoh.route("outward", "/lamp", SET_BOOL))
     server = zenoh.outside(sdk_serve, False)
+    server.wait_for("^serving$")  # it announces its service before it has one
     caller = zenoh.inside(call, 1)
     server.wait_for("^asked$")
     server.kill()
