@@ -15,11 +15,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-import numpy as np
-
 from rmw_manycore_py.ndt.geometry.arrays import Pose, ScanPoints
 from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
-from rmw_manycore_py.ndt.matching.evidence import Evidence, known_points
+from rmw_manycore_py.ndt.matching.evidence import Evidence, known_points, sample_of
 from rmw_manycore_py.ndt.matching.question import Question
 from rmw_manycore_py.ndt.matching.vehicles import beyond_vehicles
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
@@ -43,7 +41,7 @@ def closer_looks(
     seen = beyond_vehicles(asked.scan, asked.guess)
     seen = known_points(voxel_map.finest, seen, asked.guess)
     found = align(replace(asked, scan=seen), polish=False)
-    sample = np.ascontiguousarray(asked.scan[:: max(1, len(asked.scan) // SAMPLE)])
+    sample = sample_of(asked.scan, SAMPLE)
     for turn in range(ROUNDS):
         if found.is_degenerate:
             break

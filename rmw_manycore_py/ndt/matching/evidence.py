@@ -82,6 +82,11 @@ class Evidence:
         return mean * supporting / (supporting + contradicting)
 
 
+def sample_of(scan: ScanPoints, fewest: int = SAMPLE) -> ScanPoints:
+    """Return every nth point of a scan (N, 3), so that some more than `fewest` remain."""
+    return np.ascontiguousarray(scan[:: max(1, len(scan) // fewest)])
+
+
 def known_points(voxel_map: _ndt.VoxelMap, scan: ScanPoints, T_map_sensor: Pose) -> ScanPoints:
     """Return the points of a scan (N, 3) [m, sensor frame] that are not unknown at a pose (4, 4).
 

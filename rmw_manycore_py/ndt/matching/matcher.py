@@ -25,7 +25,7 @@ from rmw_manycore_py.ndt.geometry.arrays import (
 from rmw_manycore_py.ndt.matching import covariance
 from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
 from rmw_manycore_py.ndt.matching.closer_look import closer_looks
-from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE, SAMPLE, Evidence
+from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE, Evidence, sample_of
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.level import levelled
 from rmw_manycore_py.ndt.matching.native_matcher import NativeMatcher
@@ -353,8 +353,8 @@ class Matcher:
 
     def raised(self, alignment: Alignment, points: ArrayLike) -> Alignment:
         """Return an alignment of points (N, 3) with its `raised_spread_m2`, if that matters."""
-        spread_m2 = float(np.linalg.eigvalsh(alignment.xy_spread_m2)[1])
-        if alignment.is_degenerate or spread_m2 < DOUBTFUL_SPREAD_M**2:
+        widest_m2 = np.linalg.eigvalsh(alignment.xy_spread_m2)[1]
+        if alignment.is_degenerate or widest_m2 < DOUBTFUL_SPREAD_M**2:
             return alignment
         sample, evidence = self._evidence(points, alignment.T_map_sensor)
         voxel_map, raised_m2 = self._require_map(), UNCONSTRAINED_M2
@@ -367,8 +367,7 @@ class Matcher:
 
     def _evidence(self, points: ArrayLike, T_map_sensor: Pose) -> tuple[ScanPoints, Evidence]:
         """Return some of points (N, 3), and what the map says about them."""
-        scan = scan_points(points)
-        sample = np.ascontiguousarray(scan[:: max(1, len(scan) // SAMPLE)])
+        sample = sample_of(scan_points(points))
         ratio = self.options.outlier_ratio
         return sample, Evidence.of(self._require_map(), sample, T_map_sensor, ratio)
 
