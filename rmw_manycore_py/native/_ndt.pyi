@@ -42,7 +42,11 @@ class MatchOptions:
 class VoxelMap:
     """The normal distributions of points (N, 3) [m, map frame], in memory that workers share."""
 
-    def __init__(self, points: NDArray[np.float64], options: MapOptions) -> None: ...
+    def __init__(
+        self, points: NDArray[np.float64], options: MapOptions, without_every: int = 0
+    ) -> None:
+        """Build it, without every nth point if that is given."""
+
     def point_scores(
         self, points: NDArray[np.float32], pose: NDArray[np.float64], outlier_ratio: float
     ) -> NDArray[np.float32]:

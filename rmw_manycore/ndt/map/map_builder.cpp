@@ -22,12 +22,13 @@ namespace {
 
 using Points = std::vector<std::array<double, 3>>;
 
-Points finite_points(const double * xyz_m, size_t count) {
+Points finite_points(const double * xyz_m, size_t count, size_t without_every) {
   Points points;
   points.reserve(count);
   for (size_t i = 0; i < count; ++i) {
     const std::array<double, 3> point{xyz_m[3 * i], xyz_m[3 * i + 1], xyz_m[3 * i + 2]};
-    if (is_finite(point)) {
+    const bool is_left_out = without_every != 0 && i % without_every == 0;
+    if (is_finite(point) && !is_left_out) {
       points.push_back(point);
     }
   }
@@ -115,8 +116,9 @@ void fill_table(const MapHeader & h, TableSlot * table, const std::vector<TableS
 
 }  // namespace
 
-VoxelMap build_voxel_map(const double * xyz_m, size_t count, const MapOptions & options) {
-  const Points points = finite_points(xyz_m, count);
+VoxelMap build_voxel_map(
+  const double * xyz_m, size_t count, const MapOptions & options, size_t without_every) {
+  const Points points = finite_points(xyz_m, count, without_every);
   const auto refuse = [&](const std::string & found) {
     throw Error(
       ErrorCode::invalid_argument, "the map has " + found + ": expected voxels of " +

@@ -74,9 +74,11 @@ private:
   SharedMemory memory_;
 };
 
-/// Builds a map from `count` points (x, y, z [m], map frame). Ignores points that are not finite.
+/// Builds a map from `count` points (x, y, z [m], map frame). Ignores points that are not finite,
+/// and from the first on every `without_every`th, unless that is 0.
 /// Throws Error{invalid_argument} if no voxel has enough points, or if the points span more than
 /// 2^32 voxels.
-VoxelMap build_voxel_map(const double * xyz_m, size_t count, const MapOptions & options);
+VoxelMap build_voxel_map(
+  const double * xyz_m, size_t count, const MapOptions & options, size_t without_every = 0);
 
 }  // namespace manycore::ndt

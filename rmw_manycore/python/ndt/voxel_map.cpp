@@ -15,9 +15,10 @@ namespace nb = nanobind;
 namespace manycore::ndt::python {
 namespace {
 
-void init_voxel_map(VoxelMap * map, const DoublePoints & points, const MapOptions & options) {
+void init_voxel_map(
+  VoxelMap * map, const DoublePoints & points, const MapOptions & options, size_t without_every) {
   const nb::gil_scoped_release released;
-  new (map) VoxelMap(build_voxel_map(points.data(), points.shape(0), options));
+  new (map) VoxelMap(build_voxel_map(points.data(), points.shape(0), options, without_every));
 }
 
 nb::ndarray<nb::numpy, float, nb::ndim<1>> scores_of_points(
@@ -61,7 +62,9 @@ nb::ndarray<nb::numpy, uint8_t, nb::ndim<1>> columns_around_points(
 
 void bind_voxel_map(nb::module_ & module) {
   nb::class_<VoxelMap>(module, "VoxelMap")
-    .def("__init__", &init_voxel_map, nb::arg("points"), nb::arg("options"))
+    .def(
+      "__init__", &init_voxel_map, nb::arg("points"), nb::arg("options"),
+      nb::arg("without_every") = 0)
     .def(
       "point_scores", &scores_of_points, nb::arg("points"), nb::arg("pose"),
       nb::arg("outlier_ratio"))

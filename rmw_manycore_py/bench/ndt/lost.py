@@ -73,7 +73,7 @@ class Search:
 def searched(matcher: Matcher, lost: Lost) -> Search:
     """Search for a scan in the whole map."""
     level = ScoreLevel()
-    level.map_changed(matcher.map.own_likelihood)
+    level.map_changed(matcher.map.own_score)
     begin_s, own_s = time.perf_counter(), time.process_time()
     before_s = [process_cpu_s(pid) for pid in matcher.worker_pids]
     region = lost.region()

@@ -27,9 +27,8 @@ from rmw_manycore_py.bench.ndt.trust_variants import drives
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.ndt.geometry import poses
-from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE
+from rmw_manycore_py.ndt.matching.second_look import CONVINCING_SHARE
 from rmw_manycore_py.ndt.trust.judge import why_unusable
-from rmw_manycore_py.ndt.trust.score_level import FIRST_SHARE, ScoreLevel
 from rmw_manycore_py.ndt.trust.search import Found, Region
 
 CASES = 1000  # of right poses, and of wrong ones
@@ -53,7 +52,8 @@ SEARCHES = 8  # per drive
 # different drive: scores of a sparse map vary more along the way. A first pose must fit better than
 # all wrong ones of the other drives, plus a margin.
 LEFT_BELOW, DRIVE_ROOM, MAP_ROOM, FIRST_ROOM = 0.003, 0.07, 0.1, 0.03
-EXPLAINED_ROOM = 0.02
+# The explained score may leave some above: the best are less than a metre off along a street.
+EXPLAINED_ROOM, LEFT_ABOVE = 0.02, 0.001
 AROUND_M, GLOBAL_M, OUTSIDE_M = 5.0, 20.0, 30.0
 FIRST_SEARCHES = ((GLOBAL_M, True), (AROUND_M, False))  # radius, any yaw
 
@@ -191,7 +191,7 @@ def _found_by_search(shares: dict[str, Shares], helpers: Helpers, case: Case) ->
     """Return whether a global search finds a unique place, and whether it is the right one."""
     region = Region(case.guess, GLOBAL_M, any_yaw=True)
     found = helpers.call(searched, case.drive, case.index, region)
-    is_clear = not found.why_unclear(_level_of(case, shares[case.drive]), region)
+    is_clear = not found.why_unclear(case.level(shares[case.drive]), region)
     return is_clear, is_clear and _is_there(found, case)
 
 
@@ -217,17 +217,19 @@ def chosen(cases: Sequence[Case]) -> Shares:
         if case.before
     ]
     wrong = [
-        case
-        for case in cases
-        if case.is_wrong and not case.repeats and not why_unusable(case.alignment)
+        first
+        for first in (replace(case, alignment=case.first) for case in cases if not case.repeats)
+        if first.is_wrong and not why_unusable(first.alignment)
     ]
     fits = [case.alignment.fit / case.own_score for case in wrong]
     explained = [case.alignment.explained_score / case.own_score for case in wrong]
     return Shares(
         float(np.quantile(of_map, LEFT_BELOW)) - MAP_ROOM,
         float(np.quantile(of_drive, LEFT_BELOW)) - DRIVE_ROOM,
-        max(fits, default=FIRST_SHARE - FIRST_ROOM) + FIRST_ROOM,
-        max(explained, default=EXPLAINED_SHARE - EXPLAINED_ROOM) + EXPLAINED_ROOM,
+        max(fits) + FIRST_ROOM if wrong else CONVINCING_SHARE,
+        float(np.quantile(explained, 1.0 - LEFT_ABOVE)) + EXPLAINED_ROOM
+        if wrong
+        else CONVINCING_SHARE,
     )
 
 
@@ -249,10 +251,8 @@ def outcome(case: Case, shares: Shares, helpers: Helpers) -> Outcome:
     If the first look is refused, this is about the pose of the further ones, of which a first pose
     of a drive does not get all. They may find the right pose: that is let out, but not wrong.
     """
+    case = helpers.call(looked_again, case, shares)
     verdict = case.judged(shares)
-    if not verdict.is_believed:
-        case = helpers.call(looked_again, case, shares)
-        verdict = case.judged(shares)
     if not verdict.is_believed:
         return Outcome(False, False)
     covers = verdict.covers(case.alignment.T_map_sensor, case.truth)
@@ -264,25 +264,17 @@ def is_missed(case: Case, shares: Shares, helpers: Helpers, *, searches: bool) -
 
     :param searches: a first scan that is refused is searched for.
     """
-    if not case.judged(shares).is_believed:
-        case = helpers.call(looked_again, case, shares)
+    case = helpers.call(looked_again, case, shares)
     if case.judged(shares).is_believed:
         return not case.is_right
     other: Found | None = None
     for radius_m, any_yaw in FIRST_SEARCHES if searches and not case.before else ():
         region = Region(case.guess, radius_m, any_yaw)
         found = helpers.call(searched, case.drive, case.index, region)
-        level = _level_of(case, shares)
-        if not found.why_unclear(level, region, other, is_first=True):
+        if not found.why_unclear(case.level(shares), region, other, is_first=True):
             return not _is_there(found, case)
         other = found
     return True
-
-
-def _level_of(case: Case, shares: Shares) -> ScoreLevel:
-    level = shares.level()
-    level.map_changed(case.own_score)
-    return level
 
 
 def _as_autoware(case: Case) -> bool:

@@ -18,6 +18,7 @@ from rmw_manycore_py.ndt import Alignment, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Pose, ScanPoints, scan_points
 from rmw_manycore_py.ndt.geometry.thinning import spread_indices
+from rmw_manycore_py.ndt.matching.second_look import CONVINCING_SHARE
 from rmw_manycore_py.ndt.trust.judge import PoseJudge, Verdict
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
 from rmw_manycore_py.ndt.trust.search import Found, Region, search
@@ -35,6 +36,7 @@ HISTORY = 20
 HISTORY_M, HISTORY_RAD = 0.03, 0.003  # error of the preceding poses
 SEED = 11
 MIN_SCORES_BEFORE = 3
+DOUBTFUL_SHARE = 0.8  # of the map's own score: above, foreign points may explain a first pose
 
 
 @dataclass(frozen=True)
@@ -104,6 +106,8 @@ class Case:
     :param own_score: score of the map's own points.
     :param before: previously believed scans; empty at a start.
     :param truth: T_map_sensor.
+    :param first: the alignment, or the best of places around the guess where foreign points may
+        explain it as a first pose.
     """
 
     drive: str
@@ -116,6 +120,7 @@ class Case:
     guess: Pose
     alignment: Alignment
     truth: Pose
+    first: Alignment
 
     @property
     def is_right(self) -> bool:
@@ -149,11 +154,15 @@ class Case:
         """Return the angle to the truth."""
         return float(np.degrees(poses.angle_rad(self.alignment.T_map_sensor, self.truth)))
 
+    def level(self, shares: Shares) -> ScoreLevel:
+        """Return the level in the drive's map, without a history."""
+        level = shares.level()
+        level.map_changed(self.own_score)
+        return level
+
     def judged(self, shares: Shares) -> Verdict:
         """Return the verdict of a judge that has seen the history."""
-        level = shares.level()
-        judge = PoseJudge(level)
-        level.map_changed(self.own_score)
+        judge = PoseJudge(self.level(shares))
         for one in self.before:
             seen = replace(
                 self.alignment,
@@ -166,19 +175,31 @@ class Case:
 
 
 def looked_again(case: Case, shares: Shares) -> Case:
-    """Return the case after the further looks that the node takes at a refused result."""
+    """Return the case after the further looks that the node takes."""
+    verdict, level = case.judged(shares), case.level(shares)
+    if verdict.is_believed and (case.before or case.alignment.fit > level.of_first):
+        return case
     world = world_of(case.drive)
     scan = world.scan(case.index)
 
     def explained(found: Alignment) -> Case:
         return replace(case, alignment=world.matcher.explained(found, scan))
 
-    if case.judged(shares).is_score_low or not case.alignment.converged:
+    best = case
+    if verdict.is_score_low or not case.alignment.converged:
         for closer in world.matcher.closer_looks(scan, case.guess, only_pose=True):
-            if (looked := explained(closer)).judged(shares).is_believed:
-                return looked
-    if not case.before:  # left to a search
-        return case
+            best = explained(closer)
+            if best.judged(shares).is_believed:
+                break
+        else:
+            best = case
+    if not case.before:  # what that does not find is left to a search
+        if best.alignment.fit > level.of_first:
+            return best
+        around = explained(world.matcher.look_around(best.alignment, scan, case.guess))
+        return around if around.judged(shares).is_believed else best
+    if best is not case:
+        return best
     found = world.matcher.second_look(
         case.alignment,
         scan,
@@ -208,18 +229,23 @@ def cases_of(name: str, count: int, wanted: int) -> list[Case]:
         for guess in _guesses(drive.poses[index], rounds, generator):
             alignment = matcher.align_once(scan, guess, only_pose=True)
             alignment = matcher.explained(alignment, scan)
+            first, own = alignment, world.voxel_map.own_score
+            fits = alignment.fit > CONVINCING_SHARE * own
+            if not fits and alignment.explained_score > DOUBTFUL_SHARE * own:
+                first = matcher.look_around(alignment, scan, guess)
             found.append(
                 Case(
                     name,
                     index,
                     drive.is_drive,
                     drive.repeats,
-                    world.voxel_map.own_likelihood,
+                    own,
                     float(drive.stamps_s[index]),
                     before,
                     guess,
                     alignment,
                     drive.poses[index],
+                    first,
                 )
             )
     return found

@@ -147,7 +147,7 @@ class MapBuilder:
     def _next(self, source: Source) -> tuple[VoxelMap, HeldMap]:
         held = self._helper.call(map_process.build, source, self._options, self._with_points)
         try:
-            attached = VoxelMap.attach(held.shared_paths, self._options, held.own_likelihood)
+            attached = VoxelMap.attach(held.shared_paths, self._options, held.own_score)
             return attached, held
         finally:
             self._helper.call(map_process.let_go, held.shared_paths)

@@ -31,7 +31,7 @@ class HeldMap:
     """
 
     shared_paths: list[str]
-    own_likelihood: float
+    own_score: float
     points: Points | None
     warning: str
 
@@ -50,7 +50,7 @@ def built(
     points = source.read(_tiles) if isinstance(source, TileFiles) else source
     voxel_map = VoxelMap.from_points(points, options)
     returned = points if with_points else None
-    where = voxel_map.shared_paths, voxel_map.own_likelihood
+    where = voxel_map.shared_paths, voxel_map.own_score
     return voxel_map, HeldMap(*where, returned, why_coarse(points))
 
 

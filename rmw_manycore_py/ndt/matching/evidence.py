@@ -20,19 +20,17 @@ import numpy.typing as npt
 
 from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Pose, ScanPoints
+from rmw_manycore_py.ndt.geometry.thinning import spread_indices
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
-# Minimum explained score of a convincing result, as a share of the map's own score. In the worlds
-# of `manycore bench ndt --only trust` 96 % of the right poses have more. So has one of the wrong
-# ones in the map, 0.64 m off where the map ends; the others have up to 0.873.
-EXPLAINED_SHARE = 0.88
 SAMPLE = 2000  # points of a scan that are looked at
 FITS = 0.3  # minimum score of a point that fits, as a share of the map's own score
 MAX_FOREIGN_M = 3.5  # height of a bus or truck above the ground, less half a voxel
-ABOVE_GROUND_M = 1.2  # the ground fits anywhere: it does not make up for contradictions
 MIN_COLUMNS_AROUND = 6  # of eight; a column at a straight edge has five
 MIN_SUPPORT = 0.03  # minimum share of points above ground that fit
-RAISED_M = 0.4  # minimum height of what stands above the ground: a kerb does not, a guard rail does
+# Minimum height of what stands above the ground: a kerb does not, a guard rail does. The ground
+# fits anywhere: it does not make up for contradictions.
+RAISED_M = 0.4
 
 Mask = npt.NDArray[np.bool_]
 
@@ -61,7 +59,7 @@ class Evidence:
         """Classify the points of a scan (N, 3) [m, sensor frame] at a pose (4, 4)."""
         found = voxel_map.finest.point_evidence(scan, T_map_sensor, outlier_ratio)
         score, height_m, around, past = np.nan_to_num(found.astype(np.float64)).T
-        fits = score >= FITS * voxel_map.own_likelihood
+        fits = score >= FITS * voxel_map.own_score
         is_past = past > 0.0
         known = ~np.isnan(found[:, 1]) & (fits | (around >= MIN_COLUMNS_AROUND))
         stands = (height_m > 0.0) & (height_m < MAX_FOREIGN_M)
@@ -74,7 +72,7 @@ class Evidence:
 
     def explained_score(self) -> float:
         """Return the score of the rest, reduced by contradictions, to compare with a map's own."""
-        supporting = int((self.rest & self.fits & (self.height_m > ABOVE_GROUND_M)).sum())
+        supporting = int((self.raised & self.fits).sum())
         if supporting < MIN_SUPPORT * len(self.score):
             return 0.0
         contradicting = int((self.rest & ~self.fits & ~self.is_past).sum() + self.is_past.sum())
@@ -82,9 +80,9 @@ class Evidence:
         return mean * supporting / (supporting + contradicting)
 
 
-def sample_of(scan: ScanPoints, fewest: int = SAMPLE) -> ScanPoints:
-    """Return every nth point of a scan (N, 3), so that some more than `fewest` remain."""
-    return np.ascontiguousarray(scan[:: max(1, len(scan) // fewest)])
+def sample_of(scan: ScanPoints, points: int = SAMPLE) -> ScanPoints:
+    """Return at most that many points of a scan (N, 3)."""
+    return np.ascontiguousarray(scan[spread_indices(len(scan), points)])
 
 
 def known_points(voxel_map: _ndt.VoxelMap, scan: ScanPoints, T_map_sensor: Pose) -> ScanPoints:

@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.native.errors import translate_native_errors
-from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import (
     Pose,
     ScanPoints,
@@ -25,7 +24,7 @@ from rmw_manycore_py.ndt.geometry.arrays import (
 from rmw_manycore_py.ndt.matching import covariance
 from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
 from rmw_manycore_py.ndt.matching.closer_look import closer_looks
-from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE, Evidence, sample_of
+from rmw_manycore_py.ndt.matching.evidence import Evidence, sample_of
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.level import levelled
 from rmw_manycore_py.ndt.matching.native_matcher import NativeMatcher
@@ -175,6 +174,20 @@ class Matcher:
         found = self._looked_again(first, asked, convinces or self._convinces)
         return self._with_covariance(found, asked)
 
+    def look_around(
+        self,
+        first: Alignment,
+        points: ArrayLike,
+        T_map_guess: ArrayLike,
+        T_map_regularization: ArrayLike | None = None,
+    ) -> Alignment:
+        """Return the best of `first` and places up to 10 m around the guess, by `known_fit`."""
+        asked = self._asked(points, T_map_guess, T_map_regularization)
+        if isinstance(asked, Alignment) or first.is_refused:
+            return first
+        found = self._looked_around(self._weighed(asked, first), asked)
+        return self._with_covariance(found, asked)
+
     def _asked(
         self, points: ArrayLike, T_map_guess: ArrayLike, T_map_regularization: ArrayLike | None
     ) -> Question | Alignment:
@@ -199,9 +212,8 @@ class Matcher:
         """Return whether a result needs no further look, by the map's own score."""
         if not self.options.coarse_levels:
             return True
-        own = self._require_map().own_likelihood
-        fits = alignment.fit > CONVINCING_SHARE * own
-        return alignment.converged and (fits or alignment.explained_score > EXPLAINED_SHARE * own)
+        least = CONVINCING_SHARE * self._require_map().own_score
+        return alignment.converged and alignment.known_fit > least
 
     def _looked(self, asked: Question) -> Alignment:
         """Return the first result that convinces of those tried in turn, else the best fit."""
@@ -209,7 +221,7 @@ class Matcher:
         again = partial(self._looked_again, convinces=self._convinces)
         looks = (again, self._looked_closer, self._looked_around)
         if self.options.coarse_levels:
-            min_fit = CONVINCING_SHARE * self._require_map().own_likelihood
+            min_fit = CONVINCING_SHARE * self._require_map().own_score
             asked = replace(asked, min_fit=min_fit)
         found = self._weighed(asked, self._aligned(asked))
         for look in looks if is_far else (self._looked_closer,):
@@ -250,16 +262,10 @@ class Matcher:
 
     def _looked_around(self, first: Alignment, asked: Question) -> Alignment:
         """Return the best of `first` and places around the guess."""
-        search_map = self._require_map().search_map
-        if search_map is None:
-            return first
         first = self._finished(first, asked)  # the search believes its roll and pitch
-        roll, pitch, _ = poses.to_rpy(first.T_map_sensor)
-        yaw = poses.to_rpy(asked.guess)[2]
-        centre = poses.from_xyz_rpy(asked.guess[:3, 3], (roll, pitch, yaw))
+        voxel_map, upright = self._require_map(), first.T_map_sensor
         with translate_native_errors(CANNOT_WORK):
-            starts = places_around(self, search_map, asked.scan, centre)
-
+            starts = places_around(voxel_map, asked.scan, asked.guess, upright)
         found = (self._aligned(replace(asked, guess=start)) for start in starts)
         return best_of(first, map(partial(self._weighed, asked), found), lambda _: False)
 
@@ -329,7 +335,7 @@ class Matcher:
         """
         return self._require_map()
 
-    def work_on(self, search: _ndt.PlaceSearch, *, descends: bool, for_s: float) -> bool:
+    def work_on(self, search: _ndt.PlaceSearch, descends: bool, for_s: float) -> bool:
         """Work on a phase of a search for some time; return whether all of it is done.
 
         :param descends: the second phase, which looks into the squares that the first one ranks.

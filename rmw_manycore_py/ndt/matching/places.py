@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Protocol
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Pose, ScanPoints
+from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.sketch import Sketch
+from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
 YAWS = 360
 KEPT_PERMILLE = 850  # fewest points of a place that is aligned, relative to the best one
@@ -20,12 +21,8 @@ FOLLOWED = 6  # its places that are aligned
 SLICE_S = 0.2  # of a search, after which scans may be matched
 
 
-class Searcher(Protocol):
-    """A matcher that works on searches."""
-
-    def work_on(self, search: _ndt.PlaceSearch, *, descends: bool, for_s: float) -> bool:
-        """Work on a phase for some time; return whether all of it is done."""
-        ...
+# Works on the first or second phase of a search for some seconds; returns whether all is done.
+Work = Callable[[_ndt.PlaceSearch, bool, float], bool]
 
 
 def search_options(
@@ -46,24 +43,30 @@ def search_options(
     )
 
 
-def worked_on(matcher: Searcher, search: _ndt.PlaceSearch) -> Iterator[bool]:
+def worked_on(work: Work, search: _ndt.PlaceSearch) -> Iterator[bool]:
     """Do a search in slices; yield True between them."""
     for descends in (False, True):
-        while not matcher.work_on(search, descends=descends, for_s=SLICE_S):
+        while not work(search, descends, SLICE_S):
             yield True
         if not descends:
             search.order_roots()
 
 
-def places_around(
-    matcher: Searcher, search_map: _ndt.SearchMap, scan: ScanPoints, centre: Pose
-) -> list[Pose]:
-    """Return the poses around a guess (4, 4), with its roll and pitch, where a scan may be."""
+def places_around(voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, upright: Pose) -> list[Pose]:
+    """Return the poses around a guess (4, 4) where a scan (N, 3) [m, sensor frame] may be.
+
+    Searches on the calling thread, which takes some 10 ms.
+
+    :param upright: (4, 4) of which roll and pitch count: the ground determines them.
+    """
+    roll, pitch, _ = poses.to_rpy(upright)
+    centre = poses.from_xyz_rpy(guess[:3, 3], (roll, pitch, poses.to_rpy(guess)[2]))
     sketch = Sketch.of(scan, centre)
-    if not sketch.is_enough:
+    if voxel_map.search_map is None or not sketch.is_enough:
         return []
     options = search_options(centre, AROUND_M, AROUND_YAW_RAD)
-    search = _ndt.PlaceSearch(search_map, sketch.points, options)
-    for _ in worked_on(matcher, search):
+    search = _ndt.PlaceSearch(voxel_map.search_map, sketch.points, options)
+    on_this_thread = _ndt.SerialMatcher(match_options(voxel_map.options))
+    for _ in worked_on(on_this_thread.search, search):
         pass
     return [sketch.pose(*place[:4]) for place in search.found(FOLLOWED)]

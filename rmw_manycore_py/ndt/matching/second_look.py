@@ -23,7 +23,7 @@ from dataclasses import replace
 from rmw_manycore_py.ndt.geometry.arrays import Pose
 from rmw_manycore_py.ndt.matching.alignment import Alignment
 
-# Minimum fit of an unconfirmed result, as a share of the map's own score.
+# Minimum known fit of an unconfirmed result, as a share of the map's own score.
 # `manycore bench ndt --only trust` chooses it anew for first poses, leaving out each drive in turn.
 CONVINCING_SHARE = 0.90
 # Ahead, behind, left and right of the guess. Of 2, 3 and 4 m, tried by hand, 4 m converged most

@@ -7,24 +7,21 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.native.errors import translate_native_errors
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, map_points
-from rmw_manycore_py.ndt.matching.alignment import Score
 from rmw_manycore_py.ndt.matching.kernel_options import (
     coarse_options,
     map_options,
-    match_options,
     polish_options,
 )
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.own_score import own_score_of
 
 MAX_SEARCH_MAP_BYTES = 64 << 20  # of a map of about 1 km by 1 km
-SAMPLE = 20_000  # number of map points scored for own_likelihood
 
 
 class VoxelMap:
@@ -35,18 +32,18 @@ class VoxelMap:
 
     :param levels: coarsest first: those of a second look, the coarse ones, the one of all scores,
         and those that refine poses.
-    :param own_likelihood: nearest-voxel likelihood of the map's own points: an approximate upper
-        bound for scans.
+    :param own_score: score per point of the map's own points (own_score.py): about that of a scan
+        at a right pose in which nothing is hidden.
     """
 
     def __init__(
-        self, levels: list[_ndt.VoxelMap], options: MatcherOptions, own_likelihood: float
+        self, levels: list[_ndt.VoxelMap], options: MatcherOptions, own_score: float
     ) -> None:
         self.levels = levels
         self.first = len(options.second_look_levels)
         self.scored = len(options.coarser_levels)
         self.options = options
-        self.own_likelihood = own_likelihood
+        self.own_score = own_score
 
     @classmethod
     def from_points(cls, points: ArrayLike, options: MatcherOptions | None = None) -> VoxelMap:
@@ -63,12 +60,12 @@ class VoxelMap:
                 for factor in options.coarser_levels
             ]
             polishing = list(_polishing(xyz_m, options))
-            own_likelihood = _likelihood(finest, xyz_m, options)
-        return cls([*coarse, finest, *polishing], options, own_likelihood)
+            own_score = own_score_of(xyz_m, finest, options)
+        return cls([*coarse, finest, *polishing], options, own_score)
 
     @classmethod
     def attach(
-        cls, shared_paths: Sequence[str], options: MatcherOptions, own_likelihood: float
+        cls, shared_paths: Sequence[str], options: MatcherOptions, own_score: float
     ) -> VoxelMap:
         """Attach to a map held by another process; it stays valid after that process's end.
 
@@ -77,7 +74,7 @@ class VoxelMap:
         """
         with translate_native_errors("the map of another process"):
             levels = [_ndt.VoxelMap.attach(path) for path in shared_paths]
-        return cls(levels, options, own_likelihood)
+        return cls(levels, options, own_score)
 
     @property
     def shared_paths(self) -> list[str]:
@@ -121,14 +118,3 @@ def _polishing(xyz_m: Matrix, options: MatcherOptions) -> Iterator[_ndt.VoxelMap
     with suppress(_ndt.NdtError):  # too few points for such voxels, or too many voxels
         for factor in options.polishing_levels:
             yield _ndt.VoxelMap(xyz_m, polish_options(options, factor))
-
-
-def _likelihood(finest: _ndt.VoxelMap, points: Matrix, options: MatcherOptions) -> float:
-    sample = points[:: max(1, len(points) // SAMPLE)]
-    sample = sample[np.isfinite(sample).all(axis=1)]
-    middle = np.eye(4)
-    if len(sample):
-        middle[:3, 3] = np.median(sample, axis=0)
-    relative = np.ascontiguousarray(sample - middle[:3, 3], np.float32)
-    matcher = _ndt.SerialMatcher(match_options(options))
-    return Score.of(matcher.evaluate([finest], relative, middle)).nearest_voxel_likelihood

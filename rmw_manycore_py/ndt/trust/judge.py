@@ -66,6 +66,8 @@ class Verdict:
             np.fill_diagonal(wide, np.maximum(np.diag(of_sure), least))
         if self.along is not None:
             wide[:2, :2] += self.along.covariance_m2
+        if self.weak is not None and self.weak.is_all:  # nothing around constrains the yaw either
+            wide[5, 5] = max(wide[5, 5], UNSURE_RAD**2)
         return wide
 
     def corrected(self, T: Pose) -> Pose:

@@ -64,13 +64,30 @@ class Looks:
         :param is_searching: a search looks farther.
         """
         first = self._from(scan, scan.guess)
-        if first[1].is_believed:
+        found: Looked | None = first if first[1].is_believed else None
+        found = found or self._from_expectation(scan, first[1])
+        may_try = not is_searching and self._vain < VAIN_SCANS
+        if found is None and may_try:
+            found = self._closer(scan, first) or self._second_look(scan, first)
+        if self._is_doubtful(found or first) and (found is not None or may_try):
+            found = self._around(scan, found or first) or found
+        if found is None:
+            self._vain += may_try
             return first
-        again = self._from_expectation(scan, first[1])
-        if again is None and not is_searching and self._vain < VAIN_SCANS:
-            again = self._closer(scan, first) or self._second_look(scan, first)
-            self._vain += again is None
-        return again or first
+        return found
+
+    def _is_doubtful(self, found: Looked) -> bool:
+        """Return whether only foreign points would explain a first pose."""
+        return found[1].expected is None and not found[0].fit > self._judge.level.of_first
+
+    def _around(self, scan: ScanAt, best: Looked) -> Looked | None:
+        """Return the best of a first pose and the places around the guess, if it is believed.
+
+        What hides among foreign points at a wrong place fits at the right one.
+        """
+        around = self._matcher.look_around(best[0], scan.points, scan.guess, scan.regularization)
+        found = self._judged(scan, around)
+        return found if found[1].is_believed else None
 
     def _from_expectation(self, scan: ScanAt, before: Verdict) -> Looked | None:
         for start in _other_starts(scan.guess, before):

@@ -59,7 +59,7 @@ class RegionSearch:
     def _search(self, voxel_map: VoxelMap, scan: ScanPoints, region: Region) -> Found:
         # Keep the map until the result arrives: the helper attaches to this process's memory.
         paths = voxel_map.shared_paths
-        own_score = voxel_map.own_likelihood
+        own_score = voxel_map.own_score
         return self._helper.call(search_in_map, paths, own_score, self._options, scan, region)
 
 

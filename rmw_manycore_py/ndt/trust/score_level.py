@@ -11,14 +11,12 @@ from __future__ import annotations
 from collections import deque
 from statistics import median
 
-from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE
 from rmw_manycore_py.ndt.matching.second_look import CONVINCING_SHARE
 
 # Determined by `manycore bench ndt`, leaving out each recording in turn; see
 # docs/reference/benchmarks/scan_matching.md.
 MAP_SHARE = 0.75  # of the score of the map's own points
 DRIVE_SHARE = 0.90  # of the median of recent believed scores
-FIRST_SHARE = CONVINCING_SHARE  # of the map's own score: minimum fit of an unconfirmed pose
 CONFIRMED_SHARE = 0.95  # of a first pose's explained score: where motion or searches lead alike
 
 FEWEST_SCORES = 5  # minimum number for the drive's median
@@ -36,8 +34,8 @@ class ScoreLevel:
         self,
         map_share: float = MAP_SHARE,
         drive_share: float = DRIVE_SHARE,
-        first_share: float = FIRST_SHARE,
-        explained_share: float = EXPLAINED_SHARE,
+        first_share: float = CONVINCING_SHARE,
+        explained_share: float = CONVINCING_SHARE,
     ) -> None:
         self._map_share = map_share
         self._drive_share = drive_share

@@ -158,7 +158,7 @@ def _promising(
         points = len(sketch.points)
         make_room(map_bytes + _ndt.PlaceSearch.bytes_for(search_map, points, options))
         places = _ndt.PlaceSearch(search_map, sketch.points, options)
-    yield from worked_on(matcher, places)
+    yield from worked_on(matcher.work_on, places)
     return [sketch.pose(*place[:4]) for place in places.found(FOLLOWED)]
 
 

@@ -27,7 +27,7 @@ def search_region(
     finally:
         memory.give_back()
     level = ScoreLevel()
-    level.map_changed(matcher.map.own_likelihood)
+    level.map_changed(matcher.map.own_score)
     if unclear := found.why_unclear(level, region):
         raise Rejected(f"searching within {region.radius_m:.0f} m: {unclear}")
     return found.places[0]

@@ -148,7 +148,7 @@ class RobustTracking:
 
     def map_changed(self, voxel_map: VoxelMap) -> None:
         """Adapt the required score to the new map."""
-        self._judge.level.map_changed(voxel_map.own_likelihood)
+        self._judge.level.map_changed(voxel_map.own_score)
         self._along.map_changed(voxel_map)
         self._recovery.map_changed(voxel_map)
 

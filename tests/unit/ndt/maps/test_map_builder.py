@@ -64,7 +64,7 @@ def test_tiles_are_read_where_the_map_is_built(tmp_path, with_points):
     here = take(builder)  # the first
     builder.submit(lambda: files)
     there = take(builder)
-    assert there.voxel_map.own_likelihood == here.voxel_map.own_likelihood
+    assert there.voxel_map.own_score == here.voxel_map.own_score
     assert there.voxel_map.voxels == here.voxel_map.voxels
     lengths = [0 if one.points is None else len(one.points) for one in (here, there)]
     assert lengths == [with_points * len(points)] * 2
@@ -134,7 +134,7 @@ def test_a_map_outlives_the_process_that_built_it_and_is_what_it_would_be_here()
     again = take(builder)  # by another process, unless the kill hit the call
     builder.close()
     here = VoxelMap.from_points(points, options)
-    assert {one.own_likelihood for one in built} == {here.own_likelihood}
+    assert {one.own_score for one in built} == {here.own_score}
     assert again.voxel_map is not None or "map builder" in again.problem
     found = []
     for voxel_map in (*built, here):
@@ -150,8 +150,8 @@ def test_a_map_is_held_until_it_is_let_go_itself():
     options = MatcherOptions()
     ours, theirs = (map_process.build(points, options, with_points=False) for _ in range(2))
     map_process.let_go(theirs.shared_paths)
-    attached = VoxelMap.attach(ours.shared_paths, options, ours.own_likelihood)
+    attached = VoxelMap.attach(ours.shared_paths, options, ours.own_score)
     assert attached.voxels > 100
     map_process.let_go(ours.shared_paths)
     with pytest.raises(ManycoreError):
-        VoxelMap.attach(ours.shared_paths, options, ours.own_likelihood)
+        VoxelMap.attach(ours.shared_paths, options, ours.own_score)

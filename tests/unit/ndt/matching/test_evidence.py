@@ -58,7 +58,7 @@ def test_points_are_classified():
     assert evidence["in the road"][1] == pytest.approx(1.0, abs=0.1)
     assert evidence["in the road"][2] == 8
     assert evidence["on a wall"][2] < 8
-    assert evidence["on a wall"][0] > 0.5 * voxel_map.own_likelihood
+    assert evidence["on a wall"][0] > 0.5 * voxel_map.own_score
 
 
 @pytest.mark.parametrize("change", trust_variants.CHANGES.values(), ids=trust_variants.CHANGES)
@@ -92,7 +92,7 @@ def wrong_results(
 
 def believed(alignment: Alignment, voxel_map: VoxelMap) -> bool:
     judge = PoseJudge()
-    judge.level.map_changed(voxel_map.own_likelihood)
+    judge.level.map_changed(voxel_map.own_score)
     return judge.judge(0.0, alignment, alignment.T_map_sensor).is_believed
 
 
@@ -105,4 +105,4 @@ def test_unexplained_scores_of_vehicles_are_refused(drive):
     scan = scan_points(changed.scan(20))
     found = next(matcher.closer_looks(scan, changed.poses[20], only_pose=True))
     assert not believed(found, voxel_map)
-    assert found.nearest_voxel_likelihood < 0.75 * voxel_map.own_likelihood
+    assert found.nearest_voxel_likelihood < 0.75 * voxel_map.own_score

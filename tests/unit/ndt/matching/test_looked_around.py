@@ -10,7 +10,6 @@ from rmw_manycore_py.bench.ndt.trust_worlds import Drive, simulated
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap, WorkerMatcher
 from rmw_manycore_py.ndt.geometry.arrays import Pose
 from rmw_manycore_py.ndt.matching import voxel_map as voxel_maps
-from rmw_manycore_py.ndt.matching.evidence import EXPLAINED_SHARE
 from rmw_manycore_py.ndt.matching.second_look import CONVINCING_SHARE
 from support.samples.ndt_world import errors, pose
 
@@ -62,9 +61,9 @@ def test_a_right_place_that_only_evidence_supports_ends_a_second_look(drive, mat
     assert errors(matcher.align_once(drive.scan(INDEX), guess).T_map_sensor, truth)[0] > 1.0
     found = matcher.align(drive.scan(INDEX), guess)
     assert errors(found.T_map_sensor, truth)[0] < 0.1
-    own = matcher.map.own_likelihood
+    own = matcher.map.own_score
     assert found.fit < CONVINCING_SHARE * own
-    assert found.explained_score > EXPLAINED_SHARE * own
+    assert found.explained_score > CONVINCING_SHARE * own
     assert found.looks < 6
 
 

@@ -62,7 +62,7 @@ def test_an_unconvincing_right_result_is_not_led_astray(matcher: SerialMatcher) 
     traffic = rng.uniform((-20, -6, -1.5), (20, 6, 3), (len(SCAN), 3)).astype(np.float32)
     scan = np.concatenate([SCAN, traffic])
     found = matcher.align(scan, NEAR)
-    assert found.fit < CONVINCING_SHARE * MAP.own_likelihood
+    assert found.fit < CONVINCING_SHARE * MAP.own_score
     assert found.looks > 1
     assert errors(found.T_map_sensor, TRUE)[0] < 0.2
 

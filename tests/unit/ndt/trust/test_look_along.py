@@ -43,7 +43,7 @@ def test_after_a_gap_a_guess_that_stayed_behind_does_not_mislead(world, gap_s):
     matcher = SerialMatcher(OPTIONS)
     matcher.set_map(voxel_map)
     judge = PoseJudge()
-    judge.level.map_changed(voxel_map.own_likelihood)
+    judge.level.map_changed(voxel_map.own_score)
     look = LookAlong(matcher, judge)
     look.map_changed(voxel_map)
     path = poses_along(20.0 + SPEED_M_S * PERIOD_S * np.arange(8))

@@ -55,7 +55,7 @@ class Counted:
 
     def __init__(self, voxel_map: VoxelMap) -> None:
         self._judge = PoseJudge()
-        self._judge.level.map_changed(voxel_map.own_likelihood)
+        self._judge.level.map_changed(voxel_map.own_score)
         self._aligned: list[int] = []
         self.matcher = WatchedMatcher(OPTIONS)
         self.matcher.set_map(voxel_map)

@@ -55,7 +55,7 @@ def recovery(world: tuple[np.ndarray, VoxelMap]) -> Iterator[Recovery]:
 
 def judge_of(voxel_map: VoxelMap) -> PoseJudge:
     judge = PoseJudge()
-    judge.level.map_changed(voxel_map.own_likelihood)
+    judge.level.map_changed(voxel_map.own_score)
     return judge
 
 
