@@ -20,7 +20,6 @@ import numpy.typing as npt
 
 from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Pose, ScanPoints
-from rmw_manycore_py.ndt.geometry.thinning import spread_indices
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
 SAMPLE = 2000  # points of a scan that are looked at
@@ -80,9 +79,13 @@ class Evidence:
         return mean * supporting / (supporting + contradicting)
 
 
-def sample_of(scan: ScanPoints, points: int = SAMPLE) -> ScanPoints:
-    """Return at most that many points of a scan (N, 3)."""
-    return np.ascontiguousarray(scan[spread_indices(len(scan), points)])
+def sample_of(scan: ScanPoints, fewest: int = SAMPLE) -> ScanPoints:
+    """Return every nth point of a scan (N, 3), so that at least `fewest` remain.
+
+    n is odd: a LiDAR of 16 to 128 rings may give the points column by column.
+    """
+    nth = len(scan) // fewest
+    return np.ascontiguousarray(scan[:: max(1, nth - 1 | 1)])
 
 
 def known_points(voxel_map: _ndt.VoxelMap, scan: ScanPoints, T_map_sensor: Pose) -> ScanPoints:

@@ -29,7 +29,7 @@ from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.level import levelled
 from rmw_manycore_py.ndt.matching.native_matcher import NativeMatcher
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
-from rmw_manycore_py.ndt.matching.places import places_around
+from rmw_manycore_py.ndt.matching.places import best_place, places_around
 from rmw_manycore_py.ndt.matching.question import Question, question_of
 from rmw_manycore_py.ndt.matching.second_look import (
     CONVINCING_SHARE,
@@ -185,8 +185,7 @@ class Matcher:
         asked = self._asked(points, T_map_guess, T_map_regularization)
         if isinstance(asked, Alignment) or first.is_refused:
             return first
-        found = self._looked_around(self._weighed(asked, first), asked)
-        return self._with_covariance(found, asked)
+        return self._with_covariance(self._looked_around(first, asked), asked)
 
     def _asked(
         self, points: ArrayLike, T_map_guess: ArrayLike, T_map_regularization: ArrayLike | None
@@ -261,13 +260,15 @@ class Matcher:
         return best_of_second_look(first, asked.guess, aligned_widely, convinces)
 
     def _looked_around(self, first: Alignment, asked: Question) -> Alignment:
-        """Return the best of `first` and places around the guess."""
+        """Return the best of `first` and places around the guess (places.py)."""
         first = self._finished(first, asked)  # the search believes its roll and pitch
         voxel_map, upright = self._require_map(), first.T_map_sensor
         with translate_native_errors(CANNOT_WORK):
             starts = places_around(voxel_map, asked.scan, asked.guess, upright)
-        found = (self._aligned(replace(asked, guess=start)) for start in starts)
-        return best_of(first, map(partial(self._weighed, asked), found), lambda _: False)
+        found = [first, *(self._aligned(replace(asked, guess=start)) for start in starts)]
+        explained = [self.explained(one, asked.scan) for one in found]
+        best = best_place(explained, CONVINCING_SHARE * voxel_map.own_score, asked.guess)
+        return replace(best, looks=first.looks + len(starts))
 
     def _aligned(
         self,

@@ -17,26 +17,28 @@ from rmw_manycore_py.ndt.geometry.thinning import spread_indices
 from rmw_manycore_py.ndt.matching.kernel_options import map_options, match_options
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 
-# Which points are held out: a prime, as those of a LiDAR come ring by ring, of 16 to 128.
-HELD_EVERY, HELD_EVERY_OF_FEW, FEW = 53, 11, 50_000
+HELD_EVERY = 31  # odd, as a LiDAR may give the points of its 16 to 128 rings in turn
 SAMPLE = 20_000  # number of held out points that are scored
 
 
 def own_score_of(xyz_m: Matrix, finest: _ndt.VoxelMap, options: MatcherOptions) -> float:
     """Return the fit (see :class:`Alignment`) of points (N, 3) [m] held out of their map.
 
-    :param finest: the map of all points, scored instead where the others make no voxel.
+    :param finest: the map of all points. They are scored in it where few others make no voxel.
     """
-    every = HELD_EVERY_OF_FEW if len(xyz_m) < FEW else HELD_EVERY
-    held, voxel_map = xyz_m[::every], finest
+    others = finest
     with suppress(_ndt.NdtError):
-        voxel_map = _ndt.VoxelMap(xyz_m, map_options(options), without_every=every)
-    held = held[np.isfinite(held).all(axis=1)]
-    held = held[spread_indices(len(held), SAMPLE)]
+        others = _ndt.VoxelMap(xyz_m, map_options(options), without_every=HELD_EVERY)
+    return _fit(xyz_m[::HELD_EVERY], others, options) or _fit(xyz_m, finest, options)
+
+
+def _fit(points: Matrix, voxel_map: _ndt.VoxelMap, options: MatcherOptions) -> float:
+    sample = points[spread_indices(len(points), SAMPLE)]
+    sample = sample[np.isfinite(sample).all(axis=1)]
     middle = np.eye(4)
-    if len(held):
-        middle[:3, 3] = np.median(held, axis=0)
-    relative = np.ascontiguousarray(held - middle[:3, 3], np.float32)
+    if len(sample):
+        middle[:3, 3] = np.median(sample, axis=0)
+    relative = np.ascontiguousarray(sample - middle[:3, 3], np.float32)
     matcher = _ndt.SerialMatcher(match_options(options))
     found = matcher.evaluate([voxel_map], relative, middle)
     return found.nearest / found.scan_points if found.scan_points else 0.0

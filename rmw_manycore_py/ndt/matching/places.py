@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
 from rmw_manycore_py.native import _ndt
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Pose, ScanPoints
+from rmw_manycore_py.ndt.matching.alignment import Alignment
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.sketch import Sketch
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
@@ -18,6 +19,7 @@ YAWS = 360
 KEPT_PERMILLE = 850  # fewest points of a place that is aligned, relative to the best one
 AROUND_M, AROUND_YAW_RAD = 10.0, np.radians(60.0)  # of a search around a guess
 FOLLOWED = 6  # its places that are aligned
+EQUAL_SHARE = 0.995  # of the best known fit: a place that fits as well
 SLICE_S = 0.2  # of a search, after which scans may be matched
 
 
@@ -70,3 +72,16 @@ def places_around(voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, upright: P
     for _ in worked_on(on_this_thread.search, search):
         pass
     return [sketch.pose(*place[:4]) for place in search.found(FOLLOWED)]
+
+
+def best_place(found: Sequence[Alignment], min_fit: float, guess: Pose) -> Alignment:
+    """Return the best of explained results; of equally good ones the nearest to the guess (4, 4).
+
+    One that fits needs no foreign points to explain it, so it is better than all that do.
+
+    :param min_fit: minimum fit of one that fits.
+    """
+    fitting = [one for one in found if one.fit > min_fit] or found
+    least = EQUAL_SHARE * max(one.known_fit for one in fitting)
+    equal = [one for one in fitting if one.known_fit >= least]
+    return min(equal, key=lambda one: poses.distance_m(one.T_map_sensor, guess))

@@ -13,7 +13,7 @@ from rmw_manycore_py.bench.ndt.trust_worlds import Drive, simulated
 from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import scan_points
-from rmw_manycore_py.ndt.matching.evidence import known_points
+from rmw_manycore_py.ndt.matching.evidence import known_points, sample_of
 from rmw_manycore_py.ndt.trust.judge import PoseJudge
 from support.samples.ndt_world import pose, street
 
@@ -94,6 +94,29 @@ def believed(alignment: Alignment, voxel_map: VoxelMap) -> bool:
     judge = PoseJudge()
     judge.level.map_changed(voxel_map.own_score)
     return judge.judge(0.0, alignment, alignment.T_map_sensor).is_believed
+
+
+def test_a_sample_has_points_of_all_rings():
+    for rings in (16, 32, 64, 128):
+        scan = np.zeros((40_000, 3), np.float32)
+        scan[:, 2] = np.arange(len(scan)) % rings  # column by column
+        sample = sample_of(scan)
+        assert len(sample) in range(2000, 4000)
+        assert len(np.unique(sample[:, 2])) == rings
+
+
+def test_guard_rails_support_a_pose_and_kerbs_do_not():
+    """A motorway: what stands 0.8 m high is all there is."""
+    generator = np.random.default_rng(1)
+    ground = generator.uniform((-40.0, -9.0, 0.0), (40.0, 9.0, 0.0), (40_000, 3))
+    for height_m, is_explained in ((0.8, True), (0.15, False)):
+        edges = generator.uniform((-40.0, 7.0, 0.0), (40.0, 7.1, height_m), (20_000, 3))
+        edges[::2, 1] *= -1.0
+        matcher = SerialMatcher(DEFAULT)
+        matcher.set_map(VoxelMap.from_points(np.concatenate([ground, edges]), DEFAULT))
+        seen = np.concatenate([ground[::8], edges[::8]]).astype(np.float32)
+        score = matcher.explained_score(seen, np.eye(4)) / matcher.map.own_score
+        assert (score > 0.9) == is_explained
 
 
 def test_unexplained_scores_of_vehicles_are_refused(drive):

@@ -98,7 +98,7 @@ def test_a_low_score_may_be_explained_also_of_a_first_pose():
     judge.level.map_changed(OWN_SCORE)
     hidden = aligned(at(0.0), 1.8, 0.5)
     assert "level" in judge.judge(0.0, hidden, at(0.0)).why
-    for share, is_believed in ((0.9, True), (0.86, False)):
+    for share, is_believed in ((0.92, True), (0.88, False)):
         explained = replace(hidden, explained_score=share * OWN_SCORE)
         assert judge.judge(0.0, explained, at(0.0)).is_believed == is_believed
     judge.begin_at(Believed(0.0, at(0.0), at(0.0)))  # motion confirms the next
@@ -106,7 +106,7 @@ def test_a_low_score_may_be_explained_also_of_a_first_pose():
         explained = replace(aligned(at(1.5), 1.8, 0.5), explained_score=share * OWN_SCORE)
         assert judge.judge(0.1, explained, at(1.5)).is_believed == is_believed
     judge, stamp_s, x = driven()
-    explained = replace(aligned(at(x), 1.8), explained_score=0.9 * OWN_SCORE)
+    explained = replace(aligned(at(x), 1.8), explained_score=0.92 * OWN_SCORE)
     assert judge.judge(stamp_s, explained, at(x)).is_believed
     elsewhere = replace(explained, T_map_sensor=at(x + 12.0))
     assert "implausible" in judge.judge(stamp_s, elsewhere, at(x)).why
