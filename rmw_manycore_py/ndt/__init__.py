@@ -12,8 +12,9 @@ print(result.T_map_sensor)  # (4, 4): takes points of the sensor frame to the ma
 
 from rmw_manycore_py.ndt.matching.align import align
 from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
-from rmw_manycore_py.ndt.matching.matcher import Matcher, SerialMatcher
+from rmw_manycore_py.ndt.matching.matcher import Matcher
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.serial_matcher import SerialMatcher
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 from rmw_manycore_py.ndt.matching.worker_matcher import WorkerMatcher
 

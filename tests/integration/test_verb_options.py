@@ -117,12 +117,12 @@ def test_meters_wait_for_a_topic(start, manycore) -> None:
 
 
 def test_simulated_time_is_that_of_the_clock(start) -> None:
-    clock = ("topic", "pub", "-r", "50", "--print", "0", "/clock", "rosgraph_msgs/msg/Clock")
-    start(forked_manycore(*clock, "{clock: {sec: 5}}")).wait_for("beginning")
     stamped = ("/stamped", "std_msgs/msg/Header")
     pub = start(forked_manycore("topic", "pub", "-s", *stamped, "{stamp: now}"))
     echo = start(forked_manycore("topic", "echo", *stamped, "--field", "stamp.sec"))
     pub.wait_for(r"stamp=builtin_interfaces.msg.Time\(sec=0, nanosec=0\)")  # no /clock message yet
+    clock = ("topic", "pub", "-r", "50", "--print", "0", "/clock", "rosgraph_msgs/msg/Clock")
+    start(forked_manycore(*clock, "{clock: {sec: 5}}")).wait_for("beginning")
     echo.wait_for("^5$")
     assert echo.stop() == 0
     assert pub.stop() == 0

@@ -51,13 +51,13 @@ def command(
         while not client.server_is_ready():
             spin_once(node)
         echo(f"Sending goal:\n     {_text(request)}")
-        accepted = client.send_goal_async(request, _show_feedback if shows_feedback else None)
-        handle = result_of(node, accepted, action)
+        feedback = _show_feedback if shows_feedback else None
+        handle = result_of(node, lambda: client.send_goal_async(request, feedback), action)
         if not handle.accepted:
             raise ManycoreError("Goal was rejected.")
         try:
             echo(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
-            _show_result(result_of(node, handle.get_result_async(), action))
+            _show_result(result_of(node, handle.get_result_async, action))
         except KeyboardInterrupt:
             _cancel(node, handle, action)
 
@@ -77,6 +77,6 @@ def _show_result(answer: Any) -> None:
 
 def _cancel(node: Any, handle: Any, action: str) -> None:
     echo("Canceling goal...")
-    if not result_of(node, handle.cancel_goal_async(), action).goals_canceling:
+    if not result_of(node, handle.cancel_goal_async, action).goals_canceling:
         raise ManycoreError(f"{action}: the goal could not be canceled")
     echo("Goal canceled.")

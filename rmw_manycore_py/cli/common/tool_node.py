@@ -7,12 +7,13 @@ Imports rclpy late: other commands do not need it, and rmw_manycore has to be lo
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from typing import Any
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.processes.environment import enter_middleware
+from rmw_manycore_py.process.signals import interrupts_held
 from rmw_manycore_py.process.spinning import spin_once
 
 # Timeout for the answer of a node that exists.
@@ -50,8 +51,10 @@ def tool_node(
         rclpy.shutdown()
 
 
-def result_of(node: Any, future: Any, whose: str) -> Any:
-    """Spin until a future is done and return its result; no timeout."""
+def result_of(node: Any, ask: Callable[[], Any], whose: str) -> Any:
+    """Ask, spin until the future is done, and return its result; no timeout."""
+    with interrupts_held():
+        future = ask()
     while not future.done():
         spin_once(node)
     if future.exception() is not None:
@@ -63,4 +66,4 @@ def answer_of(node: Any, client: Any, request: Any) -> Any:
     """Call a service that is expected to exist, and return its response."""
     if not client.wait_for_service(ANSWER_TIMEOUT_S):
         raise ManycoreError(f"no service '{client.service_name}' within {ANSWER_TIMEOUT_S:g} s")
-    return result_of(node, client.call_async(request), client.service_name)
+    return result_of(node, lambda: client.call_async(request), client.service_name)

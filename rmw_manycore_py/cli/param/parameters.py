@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -40,28 +40,28 @@ class Parameters:
 
     def names(self, prefixes: Sequence[str] = ()) -> list[str]:
         """Return the names of all parameters, or of those below the prefixes."""
-        answer = self._answer(self._client.list_parameters(list(prefixes) or None))
+        answer = self._answer(lambda: self._client.list_parameters(list(prefixes) or None))
         return sorted(answer.result.names)
 
     def values(self, names: Sequence[str]) -> list[tuple[int, Any]]:
         """Return type and value of each parameter; raise ManycoreError for undeclared ones."""
         from rclpy.parameter import parameter_value_to_python
 
-        answer = self._answer(self._client.get_parameters(list(names)))
+        answer = self._answer(lambda: self._client.get_parameters(list(names)))
         if len(answer.values) != len(names):
             raise self._not_set(names)
         return [(value.type, parameter_value_to_python(value)) for value in answer.values]
 
     def descriptors(self, names: Sequence[str]) -> list[Any]:
         """Return the rcl_interfaces ParameterDescriptor of each parameter."""
-        answer = self._answer(self._client.describe_parameters(list(names)))
+        answer = self._answer(lambda: self._client.describe_parameters(list(names)))
         if len(answer.descriptors) != len(names):
             raise self._not_set(names)
         return list(answer.descriptors)
 
     def set(self, parameters: Sequence[Any]) -> Iterator[tuple[str, Any]]:
         """Set rcl_interfaces Parameters; yield each name with its SetParametersResult."""
-        answer = self._answer(self._client.set_parameters(list(parameters)))
+        answer = self._answer(lambda: self._client.set_parameters(list(parameters)))
         for parameter, result in zip(parameters, answer.results, strict=True):
             yield parameter.name, result
 
@@ -76,8 +76,8 @@ class Parameters:
         meant = self.meant_by(missing[0]) if missing else ""
         return ManycoreError(f"Parameter not set: {self.node_name} has no {_list(missing)}{meant}")
 
-    def _answer(self, future: Any) -> Any:
-        return result_of(self._node, future, f"parameters of {self.node_name}")
+    def _answer(self, ask: Callable[[], Any]) -> Any:
+        return result_of(self._node, ask, f"parameters of {self.node_name}")
 
 
 def parameter_of(name: str, text: str | None) -> Any:

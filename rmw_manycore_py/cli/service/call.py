@@ -66,7 +66,7 @@ def command(
             if not as_json:
                 echo(f"requester: making request: {request!r}\n")
             start_s = time.monotonic()
-            response = result_of(node, client.call_async(request), service)
+            response = result_of(node, lambda: client.call_async(request), service)
             echo(json_text(to_plain(response)) if as_json else f"response:\n{response!r}\n")
             if rate_hz is None:
                 return

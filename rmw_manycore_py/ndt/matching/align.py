@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.geometry.arrays import pose_error, pose_matrix, real_numbers
 from rmw_manycore_py.ndt.matching.alignment import Alignment
-from rmw_manycore_py.ndt.matching.matcher import SerialMatcher
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.serial_matcher import SerialMatcher
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
 

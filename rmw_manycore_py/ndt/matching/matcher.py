@@ -25,7 +25,6 @@ from rmw_manycore_py.ndt.matching import covariance
 from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
 from rmw_manycore_py.ndt.matching.closer_look import closer_looks
 from rmw_manycore_py.ndt.matching.evidence import Evidence, sample_of
-from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.level import levelled
 from rmw_manycore_py.ndt.matching.native_matcher import NativeMatcher
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
@@ -395,11 +394,3 @@ class Matcher:
         if self._map is None:
             raise ManycoreError("the matcher has no map: call set_map first", EXIT_BAD_INPUT)
         return self._map
-
-
-class SerialMatcher(Matcher):
-    """Matcher on the calling thread."""
-
-    def __init__(self, options: MatcherOptions | None = None) -> None:
-        options = options or MatcherOptions()
-        super().__init__(options, _ndt.SerialMatcher(match_options(options)))

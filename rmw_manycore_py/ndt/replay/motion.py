@@ -15,8 +15,9 @@ from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
 from rmw_manycore_py.ndt.matching.alignment import Alignment
-from rmw_manycore_py.ndt.matching.matcher import Matcher, SerialMatcher
+from rmw_manycore_py.ndt.matching.matcher import Matcher
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.serial_matcher import SerialMatcher
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 from rmw_manycore_py.ndt.recordings.recording import Recording
 

@@ -11,7 +11,8 @@ from __future__ import annotations
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import scan_points
 from rmw_manycore_py.ndt.matching.alignment import Alignment
-from rmw_manycore_py.ndt.matching.matcher import Matcher, SerialMatcher
+from rmw_manycore_py.ndt.matching.matcher import Matcher
+from rmw_manycore_py.ndt.matching.serial_matcher import SerialMatcher
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 from rmw_manycore_py.ndt.trust.along import Along
 from rmw_manycore_py.ndt.trust.judge import RESOLVED_AFTER, PoseJudge, Verdict

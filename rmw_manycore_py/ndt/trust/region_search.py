@@ -7,8 +7,8 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 
 from rmw_manycore_py.ndt.geometry.arrays import ScanPoints
-from rmw_manycore_py.ndt.matching.matcher import SerialMatcher
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.serial_matcher import SerialMatcher
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 from rmw_manycore_py.ndt.trust.search import Found, Region, search
 from rmw_manycore_py.process.helper_process import HelperProcess, leave_real_time

@@ -6,8 +6,9 @@ from __future__ import annotations
 import os
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.matching.matcher import Matcher, SerialMatcher
+from rmw_manycore_py.ndt.matching.matcher import Matcher
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.serial_matcher import SerialMatcher
 from rmw_manycore_py.ndt.matching.worker_matcher import WorkerMatcher
 from rmw_manycore_py.platform.topology import WORKER_CPUS
 
