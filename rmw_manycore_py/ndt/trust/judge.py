@@ -23,6 +23,7 @@ DROP_SCORES = 5
 SURE_AFTER = 3  # consecutive poses that each agree with the previous one
 UNSURE_M, UNSURE_RAD = 1.0, 0.2  # standard deviations of an unconfirmed pose
 WEAK_M = 2.0  # standard deviation along the weak axis, where it begins
+WEAK_RAD = 0.05  # of the yaw, where both are weak
 WEAK_DRIFT = 0.05  # growth of that per metre driven
 GAP_DRIFT = 0.5 * STEADY_SHARE  # likewise in a gap, where nothing checks the odometry
 RESOLVED_AFTER = 2  # times that a place stood out along the uncertain direction
@@ -66,8 +67,8 @@ class Verdict:
             np.fill_diagonal(wide, np.maximum(np.diag(of_sure), least))
         if self.along is not None:
             wide[:2, :2] += self.along.covariance_m2
-        if self.weak is not None and self.weak.is_all:  # nothing around constrains the yaw either
-            wide[5, 5] = max(wide[5, 5], UNSURE_RAD**2)
+        if self.weak is not None and self.weak.is_all:
+            wide[5, 5] = max(wide[5, 5], WEAK_RAD**2)
         return wide
 
     def corrected(self, T: Pose) -> Pose:

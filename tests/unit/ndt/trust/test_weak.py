@@ -13,7 +13,7 @@ from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelM
 from rmw_manycore_py.ndt.simulation.drive import poses_along
 from rmw_manycore_py.ndt.simulation.street import Street, build_street
 from rmw_manycore_py.ndt.trust.along import BASIN_M, MAX_PLACES, Along
-from rmw_manycore_py.ndt.trust.judge import UNSURE_RAD, PoseJudge
+from rmw_manycore_py.ndt.trust.judge import WEAK_RAD, PoseJudge
 from rmw_manycore_py.ndt.trust.weak import weak_directions
 from support.samples.ndt_world import pose
 
@@ -108,7 +108,7 @@ def test_another_weak_direction_adds_to_the_first_one():
     assert covariance[1, 1] > 2.0**2
     nothing = judge.judge(stamp_s, aligned(x, spread(0.4, 0.4), 1e4 * np.eye(2)), guess)
     assert nothing.corrected(pose(x + 1.0, 2.0, 0.0, 0.0, 0.0, 0.0)) == pytest.approx(guess)
-    assert nothing.covariance(1e-4 * np.eye(6))[5, 5] == UNSURE_RAD**2  # nothing tells the yaw
+    assert nothing.covariance(1e-4 * np.eye(6))[5, 5] == WEAK_RAD**2  # nothing tells the yaw
     assert across.covariance(1e-4 * np.eye(6))[5, 5] == 1e-4
 
 
