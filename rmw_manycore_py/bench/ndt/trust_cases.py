@@ -176,8 +176,8 @@ class Case:
 
 def looked_again(case: Case, shares: Shares) -> Case:
     """Return the case after the further looks that the node takes."""
-    verdict, level = case.judged(shares), case.level(shares)
-    if verdict.is_believed and (case.before or case.alignment.fit > level.of_first):
+    verdict, of_first = case.judged(shares), case.level(shares).of_first
+    if verdict.is_believed and (case.before or case.alignment.fit > of_first):
         return case
     world = world_of(case.drive)
     scan = world.scan(case.index)
@@ -185,28 +185,25 @@ def looked_again(case: Case, shares: Shares) -> Case:
     def explained(found: Alignment) -> Case:
         return replace(case, alignment=world.matcher.explained(found, scan))
 
+    def is_believed(looked: Case) -> bool:
+        return looked.judged(shares).is_believed
+
     best = case
     if verdict.is_score_low or not case.alignment.converged:
-        for closer in world.matcher.closer_looks(scan, case.guess, only_pose=True):
-            best = explained(closer)
-            if best.judged(shares).is_believed:
-                break
-        else:
-            best = case
-    if not case.before:  # what that does not find is left to a search
-        if best.alignment.fit > level.of_first:
-            return best
-        around = explained(world.matcher.look_around(best.alignment, scan, case.guess))
-        return around if around.judged(shares).is_believed else best
-    if best is not case:
+        closer = world.matcher.closer_looks(scan, case.guess, only_pose=True)
+        best = next(filter(is_believed, map(explained, closer)), case)
+    if case.before and best is case:
+        found = world.matcher.second_look(
+            case.alignment,
+            scan,
+            case.guess,
+            convinces=lambda found: is_believed(explained(found)),
+        )
+        return explained(found)
+    if case.before or best.alignment.fit > of_first:
         return best
-    found = world.matcher.second_look(
-        case.alignment,
-        scan,
-        case.guess,
-        convinces=lambda found: explained(found).judged(shares).is_believed,
-    )
-    return explained(found)
+    around = explained(world.matcher.look_around(best.alignment, scan, case.guess))
+    return around if is_believed(around) else best  # the rest is left to a search
 
 
 def cases_of(name: str, count: int, wanted: int) -> list[Case]:
