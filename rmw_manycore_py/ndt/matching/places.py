@@ -81,7 +81,7 @@ def best_place(found: Sequence[Alignment], min_fit: float, guess: Pose) -> Align
 
     :param min_fit: minimum fit of one that fits.
     """
-    fitting = [one for one in found if one.fit > min_fit] or found
+    fitting = [one for one in found if one.fit > min_fit and not one.is_degenerate] or found
     least = EQUAL_SHARE * max(one.known_fit for one in fitting)
     equal = [one for one in fitting if one.known_fit >= least]
     return min(equal, key=lambda one: poses.distance_m(one.T_map_sensor, guess))

@@ -1,0 +1,40 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Which of several places is the best: what fits, what is explained, what is near."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from rmw_manycore_py.ndt import Alignment, MatcherOptions
+from rmw_manycore_py.ndt.matching.places import best_place
+from support.samples.ndt_world import pose
+
+pytestmark = pytest.mark.unit
+
+GUESS = pose(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+MIN_FIT = 2.7
+
+
+def place(
+    x: float, fit: float, explained: float = 0.0, *, is_degenerate: bool = False
+) -> Alignment:
+    found = Alignment.refused(pose(x, 0.0, 0.0, 0.0, 0.0, 0.0), "", MatcherOptions())
+    found = replace(found, is_degenerate=is_degenerate, share_in_map=1.0)
+    return replace(found, nearest_voxel_likelihood=fit, explained_score=explained)
+
+
+@pytest.mark.parametrize(
+    ("best", "others"),
+    [
+        (place(8.0, 2.2, 2.9), [place(1.0, 2.4, 2.8)]),  # explained better
+        (place(8.0, 2.8), [place(1.0, 2.4, 3.0)]),  # needs no explanation
+        (place(8.0, 2.8, 2.9), [place(1.0, 2.75, 2.8), place(2.0, 2.0, 3.0)]),  # two that fit
+        (place(1.0, 2.4, 2.89), [place(8.0, 2.2, 2.9)]),  # as good, and nearer to the guess
+        (place(8.0, 1.0), [place(1.0, 2.8, 3.0, is_degenerate=True)]),  # no place at all
+    ],
+)
+def test_the_best_place(best: Alignment, others: list[Alignment]) -> None:
+    for found in ([best, *others], [*others, best]):
+        assert best_place(found, MIN_FIT, GUESS) is best
