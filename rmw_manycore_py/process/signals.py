@@ -70,10 +70,10 @@ def interrupts_held(signals: Iterable[signal.Signals] = (signal.SIGINT,)) -> Ite
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-    for late in noted:
-        handler = before[signal.Signals(late)]
-        if callable(handler):
-            handler(late, None)
+        for late in noted:
+            handler = before[signal.Signals(late)]
+            if callable(handler):
+                handler(late, None)
 
 
 def _ignore(_number: int, _frame: object) -> None:

@@ -180,11 +180,13 @@ class Matcher:
         T_map_guess: ArrayLike,
         T_map_regularization: ArrayLike | None = None,
     ) -> Alignment:
-        """Return the best of `first` and places up to 10 m around the guess, by `known_fit`."""
+        """Return the best of `first` and places up to 10 m around the guess (places.py)."""
         asked = self._asked(points, T_map_guess, T_map_regularization)
         if isinstance(asked, Alignment) or first.is_refused:
             return first
-        return self._with_covariance(self._looked_around(first, asked), asked)
+        found = self._looked_around(first, asked)
+        is_first = found.T_map_sensor is first.T_map_sensor
+        return found if is_first else self._with_covariance(found, asked)
 
     def _asked(
         self, points: ArrayLike, T_map_guess: ArrayLike, T_map_regularization: ArrayLike | None
@@ -262,8 +264,7 @@ class Matcher:
         """Return the best of `first` and places around the guess (places.py)."""
         first = self._finished(first, asked)  # the search believes its roll and pitch
         voxel_map, upright = self._require_map(), first.T_map_sensor
-        with translate_native_errors(CANNOT_WORK):
-            starts = places_around(voxel_map, asked.scan, asked.guess, upright)
+        starts = places_around(voxel_map, asked.scan, asked.guess, upright)
         found = [first, *(self._aligned(replace(asked, guess=start)) for start in starts)]
         explained = [self.explained(one, asked.scan) for one in found]
         best = best_place(explained, CONVINCING_SHARE * voxel_map.own_score, asked.guess)

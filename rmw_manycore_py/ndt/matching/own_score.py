@@ -3,6 +3,7 @@
 
 Voxels fit the few points they are made of better than any scan does, and points of voxels that
 have too few see none. So some points are held out of a second map of the others, and scored in it.
+Those in columns without a voxel do not count: scans near the vehicle have few of them.
 """
 
 from __future__ import annotations
@@ -22,23 +23,24 @@ SAMPLE = 20_000  # number of held out points that are scored
 
 
 def own_score_of(xyz_m: Matrix, finest: _ndt.VoxelMap, options: MatcherOptions) -> float:
-    """Return the fit (see :class:`Alignment`) of points (N, 3) [m] held out of their map.
+    """Return the mean score of points (N, 3) [m] that are held out of their map.
 
     :param finest: the map of all points. They are scored in it where few others make no voxel.
     """
     others = finest
     with suppress(_ndt.NdtError):
         others = _ndt.VoxelMap(xyz_m, map_options(options), without_every=HELD_EVERY)
-    return _fit(xyz_m[::HELD_EVERY], others, options) or _fit(xyz_m, finest, options)
+    return _score(xyz_m[::HELD_EVERY], others, options) or _score(xyz_m, finest, options)
 
 
-def _fit(points: Matrix, voxel_map: _ndt.VoxelMap, options: MatcherOptions) -> float:
+def _score(points: Matrix, voxel_map: _ndt.VoxelMap, options: MatcherOptions) -> float:
     sample = points[spread_indices(len(points), SAMPLE)]
     sample = sample[np.isfinite(sample).all(axis=1)]
     middle = np.eye(4)
     if len(sample):
         middle[:3, 3] = np.median(sample, axis=0)
     relative = np.ascontiguousarray(sample - middle[:3, 3], np.float32)
+    known = relative[voxel_map.columns_around(relative, middle) > 0]
     matcher = _ndt.SerialMatcher(match_options(options))
-    found = matcher.evaluate([voxel_map], relative, middle)
+    found = matcher.evaluate([voxel_map], known if len(known) else relative, middle)
     return found.nearest / found.scan_points if found.scan_points else 0.0

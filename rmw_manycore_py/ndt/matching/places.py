@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 
 import numpy as np
 
@@ -19,7 +20,7 @@ YAWS = 360
 KEPT_PERMILLE = 850  # fewest points of a place that is aligned, relative to the best one
 AROUND_M, AROUND_YAW_RAD = 10.0, np.radians(60.0)  # of a search around a guess
 FOLLOWED = 6  # its places that are aligned
-EQUAL_SHARE = 0.995  # of the best known fit: a place that fits as well
+FARTHER_SHARE = 0.003  # of its known fit, by which a place a metre farther off has to fit better
 SLICE_S = 0.2  # of a search, after which scans may be matched
 
 
@@ -57,7 +58,7 @@ def worked_on(work: Work, search: _ndt.PlaceSearch) -> Iterator[bool]:
 def places_around(voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, upright: Pose) -> list[Pose]:
     """Return the poses around a guess (4, 4) where a scan (N, 3) [m, sensor frame] may be.
 
-    Searches on the calling thread, which takes some 10 ms.
+    Searches on the calling thread, which takes 10 to 40 ms, and some 0.1 s more once per map.
 
     :param upright: (4, 4) of which roll and pitch count: the ground determines them.
     """
@@ -67,21 +68,27 @@ def places_around(voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, upright: P
     if voxel_map.search_map is None or not sketch.is_enough:
         return []
     options = search_options(centre, AROUND_M, AROUND_YAW_RAD)
-    search = _ndt.PlaceSearch(voxel_map.search_map, sketch.points, options)
     on_this_thread = _ndt.SerialMatcher(match_options(voxel_map.options))
-    for _ in worked_on(on_this_thread.search, search):
-        pass
-    return [sketch.pose(*place[:4]) for place in search.found(FOLLOWED)]
+    with suppress(_ndt.NdtError):  # no memory
+        search = _ndt.PlaceSearch(voxel_map.search_map, sketch.points, options)
+        for _ in worked_on(on_this_thread.search, search):
+            pass
+        return [sketch.pose(*place[:4]) for place in search.found(FOLLOWED)]
+    return []
 
 
 def best_place(found: Sequence[Alignment], min_fit: float, guess: Pose) -> Alignment:
-    """Return the best of explained results; of equally good ones the nearest to the guess (4, 4).
+    """Return the best of explained results, less the farther it is from the guess (4, 4).
 
     One that fits needs no foreign points to explain it, so it is better than all that do.
 
     :param min_fit: minimum fit of one that fits.
     """
-    fitting = [one for one in found if one.fit > min_fit and not one.is_degenerate] or found
-    least = EQUAL_SHARE * max(one.known_fit for one in fitting)
-    equal = [one for one in fitting if one.known_fit >= least]
-    return min(equal, key=lambda one: poses.distance_m(one.T_map_sensor, guess))
+    ended = [one for one in found if one.converged] or found
+    fitting = [one for one in ended if one.fit > min_fit] or ended
+
+    def rank(one: Alignment) -> float:
+        away_m = poses.distance_m(one.T_map_sensor, guess)
+        return one.known_fit * (1.0 - FARTHER_SHARE * away_m)
+
+    return max(fitting, key=rank)

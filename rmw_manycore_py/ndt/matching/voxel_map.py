@@ -32,8 +32,8 @@ class VoxelMap:
 
     :param levels: coarsest first: those of a second look, the coarse ones, the one of all scores,
         and those that refine poses.
-    :param own_score: score per point of the map's own points (own_score.py): about that of a scan
-        at a right pose in which nothing is hidden.
+    :param own_score: mean score of the map's own points (own_score.py): about that of a scan at a
+        right pose in which nothing is hidden.
     """
 
     def __init__(

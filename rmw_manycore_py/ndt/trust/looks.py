@@ -1,16 +1,17 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Aligns a scan, and again where the result is refused: at most fifteen times.
+"""Aligns a scan, and again where the result is refused: at most sixteen times.
 
 ```
  from the guess ── refused ─► from where the motion leads ── refused ─► finest level alone
-   1                            up to 3                         if the score refuses: 3
+   1                            up to 3                         if the score refuses: 4
                                                             ── refused ─► second look
                                                                            up to 5
  first pose that does not fit ─► from places around the guess, up to 6 ─► the best
 ```
 
 The last three pause while a search looks farther, and after scans that they did not help. So beside
-load, refused scans do not keep the matcher from newer ones.
+load, refused scans do not keep the matcher from newer ones. A first pose that is explained, but
+does not fit, is always compared.
 """
 
 from __future__ import annotations

@@ -17,11 +17,9 @@ GUESS = pose(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 MIN_FIT = 2.7
 
 
-def place(
-    x: float, fit: float, explained: float = 0.0, *, is_degenerate: bool = False
-) -> Alignment:
+def place(x: float, fit: float, explained: float = 0.0, *, converged: bool = True) -> Alignment:
     found = Alignment.refused(pose(x, 0.0, 0.0, 0.0, 0.0, 0.0), "", MatcherOptions())
-    found = replace(found, is_degenerate=is_degenerate, share_in_map=1.0)
+    found = replace(found, is_degenerate=False, converged=converged, share_in_map=1.0)
     return replace(found, nearest_voxel_likelihood=fit, explained_score=explained)
 
 
@@ -29,10 +27,10 @@ def place(
     ("best", "others"),
     [
         (place(8.0, 2.2, 2.9), [place(1.0, 2.4, 2.8)]),  # explained better
+        (place(1.0, 2.2, 2.85), [place(8.0, 2.4, 2.9)]),  # not by enough for 7 m
         (place(8.0, 2.8), [place(1.0, 2.4, 3.0)]),  # needs no explanation
-        (place(8.0, 2.8, 2.9), [place(1.0, 2.75, 2.8), place(2.0, 2.0, 3.0)]),  # two that fit
-        (place(1.0, 2.4, 2.89), [place(8.0, 2.2, 2.9)]),  # as good, and nearer to the guess
-        (place(8.0, 1.0), [place(1.0, 2.8, 3.0, is_degenerate=True)]),  # no place at all
+        (place(8.0, 2.8, 2.95), [place(1.0, 2.75, 2.8), place(2.0, 2.0, 3.0)]),  # two that fit
+        (place(8.0, 1.0), [place(1.0, 2.8, 3.0, converged=False)]),  # that is no place
     ],
 )
 def test_the_best_place(best: Alignment, others: list[Alignment]) -> None:

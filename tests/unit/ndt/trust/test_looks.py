@@ -152,6 +152,16 @@ def car_park(cars: int) -> Street:
     return Street(lower, upper, np.zeros((0, 2)), np.zeros(0), np.zeros(0))
 
 
+def test_a_first_pose_that_fits_nowhere_is_soon_looked_around_no_more(voxel_map):
+    hidden = trust_variants.with_vehicles(simulated()["tunnel"]())
+    searching, counted = Counted(voxel_map), Counted(voxel_map)
+    assert searching.look(hidden, FIRST, is_searching=True) == 1
+    numbers = [counted.look(hidden, FIRST + index) for index in range(VAIN_SCANS + 2)]
+    assert not counted.is_believed
+    assert min(numbers[:VAIN_SCANS]) > 5
+    assert numbers[VAIN_SCANS:] == [1, 1]
+
+
 @pytest.mark.parametrize("voxel_size_m", [1.0, 2.0])
 def test_among_equal_pillars_and_other_cars_than_mapped_a_first_pose_is_right(voxel_size_m):
     """Wrong places nearer to the guess are explained, too: by cars."""
