@@ -85,11 +85,14 @@ class Looks:
     def _around(self, scan: ScanAt, best: Looked) -> Looked | None:
         """Return the best of a first pose and the places around the guess, if it is believed.
 
-        What hides among foreign points at a wrong place fits at the right one.
+        What hides among foreign points at a wrong place fits at the right one. Where nothing
+        constrains the position, as on a square, no place is better than another.
         """
         around = self._matcher.look_around(best[0], scan.points, scan.guess, scan.regularization)
         found = self._judged(scan, around)
-        return found if found[1].is_believed else None
+        weak = found[1].weak
+        is_place = weak is None or not weak.is_all
+        return found if found[1].is_believed and is_place else None
 
     def _from_expectation(self, scan: ScanAt, before: Verdict) -> Looked | None:
         for start in _other_starts(scan.guess, before):

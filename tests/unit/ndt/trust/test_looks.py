@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from rmw_manycore_py.bench.ndt import trust_variants
-from rmw_manycore_py.bench.ndt.gap_worlds import LIDAR
+from rmw_manycore_py.bench.ndt.gap_worlds import LIDAR, open_square
 from rmw_manycore_py.bench.ndt.trust_worlds import Drive, simulated
 from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry import poses
@@ -180,6 +180,21 @@ def test_among_equal_pillars_and_other_cars_than_mapped_a_first_pose_is_right(vo
         alignment, verdict = counted.looks.look(ScanAt(0.0, scan, guess, None), is_searching=False)
         found.append(verdict.is_believed and poses.distance_m(alignment.T_map_sensor, T) < 0.2)
     assert np.mean(found) >= 0.9
+
+
+def test_on_a_square_no_place_is_better_than_the_guess():
+    """Vehicles would explain places 6 to 10 m away, though the ground is all that fits there."""
+    square, path = open_square(3), [poses.from_xyz_rpy((x, 2.0, 1.9)) for x in range(10, 110, 3)]
+    scans = [LIDAR.scan(square, T, np.random.default_rng(3)) @ T[:3, :3].T + T[:3, 3] for T in path]
+    counted = Counted(VoxelMap.from_points(np.concatenate(scans), OPTIONS))
+    for index, T in enumerate(path[::2]):
+        seen = LIDAR.scan(square, T, np.random.default_rng((4, index)))
+        hidden = trust_variants.hidden_by_vehicles(seen, 0.2, np.random.default_rng((5, index)))
+        guess = T @ poses.from_xyz_rpy((0.5 * np.cos(index), 0.5 * np.sin(index), 0.0))
+        scan = ScanAt(0.0, scan_points(hidden), guess, None)
+        alignment, verdict = counted.looks.look(scan, is_searching=False)
+        assert not verdict.is_believed or poses.distance_m(alignment.T_map_sensor, T) < 1.0
+        counted.looks.hope()
 
 
 def test_motion_that_refuses_a_good_score_leads_back_to_where_it_leads(counted, drive):
