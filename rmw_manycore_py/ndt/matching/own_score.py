@@ -19,21 +19,30 @@ from rmw_manycore_py.ndt.matching.kernel_options import map_options, match_optio
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 
 HELD_EVERY = 31  # odd, as a LiDAR may give the points of its 16 to 128 rings in turn
-SAMPLE = 20_000  # number of held out points that are scored
+SAMPLE = 20_000  # number of points that are scored
+# Of the score of what voxels are made of. Less is that of a map whose voxels are lost without the
+# points that are held out.
+LEAST_SHARE = 0.87
 
 
 def own_score_of(xyz_m: Matrix, finest: _ndt.VoxelMap, options: MatcherOptions) -> float:
     """Return the mean score of points (N, 3) [m] that are held out of their map.
 
-    :param finest: the map of all points. They are scored in it where few others make no voxel.
+    :param finest: the map of all points.
     """
-    others = finest
-    with suppress(_ndt.NdtError):
+    of_all = _evaluated(xyz_m, finest, options)
+    least = LEAST_SHARE * of_all.nearest / of_all.points if of_all.points else 0.0
+    with suppress(_ndt.NdtError):  # the others make no voxel
         others = _ndt.VoxelMap(xyz_m, map_options(options), without_every=HELD_EVERY)
-    return _score(xyz_m[::HELD_EVERY], others, options) or _score(xyz_m, finest, options)
+        held = _evaluated(xyz_m[::HELD_EVERY], others, options)
+        return max(least, held.nearest / max(held.scan_points, 1))
+    return least
 
 
-def _score(points: Matrix, voxel_map: _ndt.VoxelMap, options: MatcherOptions) -> float:
+def _evaluated(
+    points: Matrix, voxel_map: _ndt.VoxelMap, options: MatcherOptions
+) -> _ndt.Derivatives:
+    """Score those of points (N, 3) [m] that are above or below a voxel."""
     sample = points[spread_indices(len(points), SAMPLE)]
     sample = sample[np.isfinite(sample).all(axis=1)]
     middle = np.eye(4)
@@ -42,5 +51,4 @@ def _score(points: Matrix, voxel_map: _ndt.VoxelMap, options: MatcherOptions) ->
     relative = np.ascontiguousarray(sample - middle[:3, 3], np.float32)
     known = relative[voxel_map.columns_around(relative, middle) > 0]
     matcher = _ndt.SerialMatcher(match_options(options))
-    found = matcher.evaluate([voxel_map], known if len(known) else relative, middle)
-    return found.nearest / found.scan_points if found.scan_points else 0.0
+    return matcher.evaluate([voxel_map], known if len(known) else relative, middle)

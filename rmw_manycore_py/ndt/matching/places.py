@@ -20,7 +20,9 @@ YAWS = 360
 KEPT_PERMILLE = 850  # fewest points of a place that is aligned, relative to the best one
 AROUND_M, AROUND_YAW_RAD = 10.0, np.radians(60.0)  # of a search around a guess
 FOLLOWED = 6  # its places that are aligned
-FARTHER_SHARE = 0.003  # of its known fit, by which a place a metre farther off has to fit better
+FITTING_SHARE = 0.05  # of its known fit, that one that fits may have less than an explained one
+FARTHER_SHARE = 0.005  # of its known fit, by which a place a metre farther off has to fit better
+STOREY_M = 2.0  # in height between a guess and places around it: others are on another storey
 SLICE_S = 0.2  # of a search, after which scans may be matched
 
 
@@ -73,22 +75,22 @@ def places_around(voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, upright: P
         search = _ndt.PlaceSearch(voxel_map.search_map, sketch.points, options)
         for _ in worked_on(on_this_thread.search, search):
             pass
-        return [sketch.pose(*place[:4]) for place in search.found(FOLLOWED)]
+        found = [sketch.pose(*place[:4]) for place in search.found(FOLLOWED)]
+        return [place for place in found if abs(place[2, 3] - guess[2, 3]) < STOREY_M]
     return []
 
 
 def best_place(found: Sequence[Alignment], min_fit: float, guess: Pose) -> Alignment:
     """Return the best of explained results, less the farther it is from the guess (4, 4).
 
-    One that fits needs no foreign points to explain it, so it is better than all that do.
+    One that fits needs no foreign points to explain it, so that is worth as much as a lead.
 
     :param min_fit: minimum fit of one that fits.
     """
-    ended = [one for one in found if one.converged] or found
-    fitting = [one for one in ended if one.fit > min_fit] or ended
 
     def rank(one: Alignment) -> float:
         away_m = poses.distance_m(one.T_map_sensor, guess)
-        return one.known_fit * (1.0 - FARTHER_SHARE * away_m)
+        fitting = FITTING_SHARE if one.fit > min_fit else 0.0
+        return one.known_fit * (1.0 + fitting - FARTHER_SHARE * away_m)
 
-    return max(fitting, key=rank)
+    return max([one for one in found if one.converged] or found, key=rank)

