@@ -267,7 +267,7 @@ class Matcher:
         starts = places_around(voxel_map, asked.scan, asked.guess, upright)
         found = [first, *(self._aligned(replace(asked, guess=start)) for start in starts)]
         explained = [self.explained(one, asked.scan) for one in found]
-        best = best_place(explained, CONVINCING_SHARE * voxel_map.own_score, asked.guess)
+        best = best_place(explained, asked.guess)
         return replace(best, looks=first.looks + len(starts))
 
     def _aligned(

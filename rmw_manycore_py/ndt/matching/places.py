@@ -20,8 +20,8 @@ YAWS = 360
 KEPT_PERMILLE = 850  # fewest points of a place that is aligned, relative to the best one
 AROUND_M, AROUND_YAW_RAD = 10.0, np.radians(60.0)  # of a search around a guess
 FOLLOWED = 6  # its places that are aligned
-FITTING_SHARE = 0.05  # of its known fit, that one that fits may have less than an explained one
-FARTHER_SHARE = 0.005  # of its known fit, by which a place a metre farther off has to fit better
+FIT_WEIGHT = 0.25  # of the fit, beside the known fit: what fits needs less explanation
+FARTHER_SHARE = 0.005  # by which a place a metre farther from the guess has to be better
 STOREY_M = 2.0  # in height between a guess and places around it: others are on another storey
 SLICE_S = 0.2  # of a search, after which scans may be matched
 
@@ -80,17 +80,11 @@ def places_around(voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, upright: P
     return []
 
 
-def best_place(found: Sequence[Alignment], min_fit: float, guess: Pose) -> Alignment:
-    """Return the best of explained results, less the farther it is from the guess (4, 4).
-
-    One that fits needs no foreign points to explain it, so that is worth as much as a lead.
-
-    :param min_fit: minimum fit of one that fits.
-    """
+def best_place(found: Sequence[Alignment], guess: Pose) -> Alignment:
+    """Return the best of explained results, less the farther it is from the guess (4, 4)."""
 
     def rank(one: Alignment) -> float:
         away_m = poses.distance_m(one.T_map_sensor, guess)
-        fitting = FITTING_SHARE if one.fit > min_fit else 0.0
-        return one.known_fit * (1.0 + fitting - FARTHER_SHARE * away_m)
+        return (one.known_fit + FIT_WEIGHT * one.fit) * (1.0 - FARTHER_SHARE * away_m)
 
     return max([one for one in found if one.converged] or found, key=rank)
