@@ -33,6 +33,8 @@ from support.nodes.scan_matching import (
 FAR = poses_along([14.0])[0]  # farther than an alignment from TRUTH converges
 # From here all looks at a scan of TRUTH end elsewhere but the second one.
 FAR_GUESS = TRUTH @ poses.from_xyz_rpy((7.0, 0.0, 0.0), (0.0, 0.0, 0.3))
+FARTHER = TRUTH @ poses.from_xyz_rpy((17.0, 0.0, 0.0), (0.0, 0.0, 0.3))
+SEARCHING = "searching globally"
 PRIORITY = 5
 
 
@@ -76,11 +78,12 @@ def test_a_first_guess_from_far_off_gets_a_second_look_where_nothing_searches(st
     assert values_of(report)["second_looks"] == "1"  # one that converges well has none
 
 
-def test_a_first_guess_from_far_off_is_left_to_a_search(matched):
-    reports, T = answered(matched, street_scan(), FAR_GUESS)
+@pytest.mark.parametrize(("guess", "step"), [(FAR_GUESS, "tracking"), (FARTHER, SEARCHING)])
+def test_a_first_pose_is_one_of_the_places_around_or_left_to_a_search(matched, guess, step):
+    reports, T = answered(matched, street_scan(), guess)
     judged = [values for report in reports if "second_looks" in (values := values_of(report))]
     assert {values["second_looks"] for values in judged} == {"0"}  # without the map it has none
-    assert judged[0]["recovery_step"] == "searching globally"  # with the first scan
+    assert judged[0]["recovery_step"] == step  # with the first scan
     assert error_m(T) < 0.1
 
 
