@@ -22,7 +22,7 @@ AROUND_M, AROUND_YAW_RAD = 10.0, np.radians(60.0)  # of a search around a guess
 FOLLOWED = 6  # its places that are aligned
 FIT_WEIGHT = 0.25  # of the fit, beside the known fit: what fits needs less explanation
 FARTHER_SHARE = 0.005  # by which a place a metre farther from the guess has to be better
-STOREY_M = 2.0  # in height between a guess and places around it: others are on another storey
+STOREY_M = 2.0  # in height between a result and places around it: others are on another storey
 SLICE_S = 0.2  # of a search, after which scans may be matched
 
 
@@ -62,7 +62,7 @@ def places_around(voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, upright: P
 
     Searches on the calling thread, which takes 10 to 40 ms, and some 0.1 s more once per map.
 
-    :param upright: (4, 4) of which roll and pitch count: the ground determines them.
+    :param upright: (4, 4) of which roll, pitch and height count: the ground determines them.
     """
     roll, pitch, _ = poses.to_rpy(upright)
     centre = poses.from_xyz_rpy(guess[:3, 3], (roll, pitch, poses.to_rpy(guess)[2]))
@@ -76,7 +76,7 @@ def places_around(voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, upright: P
         for _ in worked_on(on_this_thread.search, search):
             pass
         found = [sketch.pose(*place[:4]) for place in search.found(FOLLOWED)]
-        return [place for place in found if abs(place[2, 3] - guess[2, 3]) < STOREY_M]
+        return [place for place in found if abs(place[2, 3] - upright[2, 3]) < STOREY_M]
     return []
 
 
