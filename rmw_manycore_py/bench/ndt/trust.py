@@ -223,13 +223,13 @@ def chosen(cases: Sequence[Case]) -> Shares:
     ]
     fits = [case.alignment.fit / case.own_score for case in wrong]
     explained = [case.alignment.explained_score / case.own_score for case in wrong]
+    fits = fits or [CONVINCING_SHARE - FIRST_ROOM]
+    explained = explained or [CONVINCING_SHARE - EXPLAINED_ROOM]
     return Shares(
         float(np.quantile(of_map, LEFT_BELOW)) - MAP_ROOM,
         float(np.quantile(of_drive, LEFT_BELOW)) - DRIVE_ROOM,
-        max(fits) + FIRST_ROOM if wrong else CONVINCING_SHARE,
-        float(np.quantile(explained, 1.0 - LEFT_ABOVE)) + EXPLAINED_ROOM
-        if wrong
-        else CONVINCING_SHARE,
+        max(fits) + FIRST_ROOM,
+        float(np.quantile(explained, 1.0 - LEFT_ABOVE)) + EXPLAINED_ROOM,
     )
 
 

@@ -45,7 +45,7 @@ def test_a_verb_is_interrupted_when_it_has_asked():
         done.append(True)
 
     with pytest.raises(KeyboardInterrupt):
-        result_of(None, ask, "nobody")
+        result_of(None, ask, "/server")
     assert done
 
 
