@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -24,6 +26,12 @@ constexpr double behind_share = 0.5;
 /// A plane's largest inverse variance is nearly the trace; that of a pole half of it.
 constexpr double planar_share = 0.85;
 constexpr int power_iterations = 4;
+/// How steep a floor may be: the least height of its normal of length 1.
+constexpr double level_normal = 0.9;
+/// How far below or above the floor under the sensor that of another column may be: elsewhere on a
+/// storey, not on the next one.
+constexpr float storey_within_m = 1;
+constexpr int32_t columns_beside = 2;  // of the sensor's, on each side, that show its floor
 
 Vector3 times(const float * b, const Vector3 & x) {
   return {
@@ -80,27 +88,50 @@ const VoxelLine * own_voxel(const MapView & map, const Cell & cell) {
   return line != 0 && cell_of(in_cells(header, mean_of(voxel))) == cell ? &voxel : nullptr;
 }
 
+/// The normal of a planar voxel.
+std::optional<Vector3> normal_of(const VoxelLine & voxel) {
+  const float * const b = voxel.inverse_covariance;
+  Vector3 normal{1, 0.7, 0.4};
+  for (int i = 0; i < power_iterations; ++i) {
+    normal = times(b, normal);
+    const double length = std::sqrt(dot(normal, normal));
+    for (double & n : normal) {
+      n /= length;
+    }
+  }
+  const double largest = dot(times(b, normal), normal);
+  const bool is_planar = largest >= planar_share * static_cast<double>(b[0] + b[3] + b[5]);
+  return is_planar ? std::optional(normal) : std::nullopt;
+}
+
+bool is_floor(const VoxelLine & voxel) {
+  const std::optional<Vector3> normal = normal_of(voxel);
+  return normal && std::abs((*normal)[2]) > level_normal;
+}
+
 /// A column of the map.
 struct Column {
-  float lowest_m;  ///< height of the lowest voxel's mean, relative to the map's origin; NaN without
-  float around;    ///< columns with voxels among the eight around it
+  float floor_m;  ///< height of its floor, relative to the map's origin; NaN without voxels
+  float around;   ///< columns with voxels among the eight around it
 };
 
-/// Columns of the map, each looked at once.
+/// Columns of the map, each looked at once. The floor of one is that of the sensor's storey, if it
+/// has that, else its lowest voxel.
 class Columns {
 public:
-  explicit Columns(const MapView & map) : map_(map) {}
+  Columns(const MapView & map, const Vector3 & sensor_m)
+  : map_(map), sensors_floor_m_(floor_around(sensor_m)) {}
 
   const Column & at(const Cell & cell) {
     const int32_t x = cell[0];
     const int32_t y = cell[1];
     const auto [entry, is_new] = columns_.try_emplace(key_of(x, y));
     if (is_new) {
-      entry->second.lowest_m = lowest_m(x, y);
+      entry->second.floor_m = floor_m(x, y);
       for (int32_t i = -1; i <= 1; ++i) {
         for (int32_t j = -1; j <= 1; ++j) {
           const bool is_beside = i != 0 || j != 0;
-          entry->second.around += is_beside && !std::isnan(lowest_m(x + i, y + j)) ? 1.0F : 0.0F;
+          entry->second.around += is_beside && !std::isnan(floor_m(x + i, y + j)) ? 1.0F : 0.0F;
         }
       }
     }
@@ -112,11 +143,50 @@ private:
     return (static_cast<uint64_t>(static_cast<uint32_t>(x)) << 32) | static_cast<uint32_t>(y);
   }
 
-  float lowest_m(int32_t x, int32_t y) {
-    const auto [entry, is_new] = lowest_m_.try_emplace(key_of(x, y), std::nanf(""));
-    for (int32_t z = 0; is_new && std::isnan(entry->second) && z < map_.header->cells[2]; ++z) {
-      if (const VoxelLine * const voxel = own_voxel(map_, {x, y, z})) {
-        entry->second = voxel->mean_m[2];
+  /// The height of the floor below a place, the median of columns around it: a parked vehicle's
+  /// roof looks like a floor. NaN without one.
+  float floor_around(const Vector3 & place_m) const {
+    const Cell middle = cell_of(in_cells(*map_.header, place_m));
+    std::vector<float> found;
+    for (int32_t x = -columns_beside; x <= columns_beside; ++x) {
+      for (int32_t y = -columns_beside; y <= columns_beside; ++y) {
+        const float height_m = floor_below({middle[0] + x, middle[1] + y, middle[2]}, place_m[2]);
+        if (!std::isnan(height_m)) {
+          found.push_back(height_m);
+        }
+      }
+    }
+    const auto median = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
+    std::nth_element(found.begin(), median, found.end());
+    return found.empty() ? std::nanf("") : *median;
+  }
+
+  /// The height of the highest floor in a column below a cell and a height; NaN without one.
+  float floor_below(Cell cell, double below_m) const {
+    for (cell[2] = std::min(cell[2], map_.header->cells[2] - 1); cell[2] >= 0; --cell[2]) {
+      const VoxelLine * const voxel = own_voxel(map_, cell);
+      if (voxel != nullptr && mean_of(*voxel)[2] < below_m && is_floor(*voxel)) {
+        return voxel->mean_m[2];
+      }
+    }
+    return std::nanf("");
+  }
+
+  float floor_m(int32_t x, int32_t y) {
+    const auto [entry, is_new] = floor_m_.try_emplace(key_of(x, y), std::nanf(""));
+    for (int32_t z = 0; is_new && z < map_.header->cells[2]; ++z) {
+      const VoxelLine * const voxel = own_voxel(map_, {x, y, z});
+      if (voxel == nullptr) {
+        continue;
+      }
+      const float height_m = voxel->mean_m[2];
+      const bool is_beyond = !(height_m < sensors_floor_m_ + storey_within_m);
+      const float lowest_m = sensors_floor_m_ - storey_within_m;
+      if (std::isnan(entry->second) || (!is_beyond && height_m > lowest_m && is_floor(*voxel))) {
+        entry->second = height_m;
+      }
+      if (is_beyond || entry->second > lowest_m) {
+        break;  // also without a floor under the sensor
       }
     }
     return entry->second;
@@ -124,7 +194,8 @@ private:
 
   const MapView & map_;
   std::unordered_map<uint64_t, Column> columns_;
-  std::unordered_map<uint64_t, float> lowest_m_;
+  std::unordered_map<uint64_t, float> floor_m_;
+  const float sensors_floor_m_;  // NaN without one
 };
 
 /// Whether a ray passes through the surface of a planar voxel to a place clearly behind it.
@@ -145,21 +216,12 @@ bool passes(
   if (dot(times(b, x), x) > 1) {
     return false;
   }
-  Vector3 normal{1, 0.7, 0.4};
-  double largest = 0;
-  for (int i = 0; i < power_iterations; ++i) {
-    normal = times(b, normal);
-    largest = std::sqrt(dot(normal, normal));
-    for (double & n : normal) {
-      n /= largest;
-    }
-  }
-  largest = dot(times(b, normal), normal);
-  if (largest < planar_share * static_cast<double>(b[0] + b[3] + b[5])) {
+  const std::optional<Vector3> normal = normal_of(voxel);
+  if (!normal) {
     return false;
   }
-  const double behind_m = dot(normal, minus(to_m, mean));
-  const double before_m = dot(normal, minus(from_m, mean));
+  const double behind_m = dot(*normal, minus(to_m, mean));
+  const double before_m = dot(*normal, minus(from_m, mean));
   return behind_m * before_m < 0 && std::abs(behind_m) > behind_share * map.voxel_size_m;
 }
 
@@ -243,7 +305,7 @@ void point_evidence(
   std::vector<float> scores(count);
   point_scores(map, outlier_ratio, pose, xyz_m, count, scores.data());
   const Places places(map, pose);
-  Columns columns(map);
+  Columns columns(map, places.from_m());
   for (size_t point = 0; point < count; ++point) {
     const Vector3 place_m = places.of(xyz_m + 3 * point);
     if (!is_finite(place_m)) {
@@ -252,7 +314,7 @@ void point_evidence(
     }
     const Column & column = columns.at(cell_of(in_cells(*map.header, place_m)));
     evidence[point] = {
-      scores[point], static_cast<float>(place_m[2]) - column.lowest_m, column.around,
+      scores[point], static_cast<float>(place_m[2]) - column.floor_m, column.around,
       is_past_map(map, places.from_m(), place_m) ? 1.0F : 0.0F};
   }
 }
@@ -260,13 +322,13 @@ void point_evidence(
 void columns_around(
   const MapView & map, const Pose6 & pose, const float * xyz_m, size_t count, uint8_t * around) {
   const Places places(map, pose);
-  Columns columns(map);
+  Columns columns(map, places.from_m());
   for (size_t point = 0; point < count; ++point) {
     const Vector3 place_m = places.of(xyz_m + 3 * point);
     around[point] = 0;
     if (is_finite(place_m)) {
       const Column & column = columns.at(cell_of(in_cells(*map.header, place_m)));
-      around[point] = std::isnan(column.lowest_m) ? 0 : static_cast<uint8_t>(column.around);
+      around[point] = std::isnan(column.floor_m) ? 0 : static_cast<uint8_t>(column.around);
     }
   }
 }

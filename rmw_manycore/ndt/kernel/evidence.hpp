@@ -12,7 +12,7 @@ namespace manycore::ndt {
 /// Evidence of a map about one point of a scan.
 struct PointEvidence {
   float score;           ///< of the best voxel in range; NaN without one
-  float height_m;        ///< above the lowest voxel of the point's column; NaN where that is empty
+  float height_m;        ///< above the floor of the point's column; NaN where that is empty
   float columns_around;  ///< columns with voxels among the eight around it
   float is_past_map;     ///< 1 if the ray to the point passes through a mapped surface
 };

@@ -39,7 +39,7 @@ class Evidence:
     """What the map says about N points.
 
     :param score: (N,) of the best voxel around each point; 0 without one.
-    :param height_m: (N,) above the lowest voxel of the column.
+    :param height_m: (N,) above the floor of the column.
     :param fits: (N,) whether a point is at something in the map.
     :param is_past: (N,) whether it lies behind a surface.
     :param rest: (N,) whether it is neither unknown nor foreign.

@@ -61,6 +61,22 @@ def test_points_are_classified():
     assert evidence["on a wall"][0] > 0.5 * voxel_map.own_score
 
 
+def test_heights_are_above_the_floor_of_the_sensors_storey():
+    x, y = np.meshgrid(np.arange(0.0, 40.0, 0.2), np.arange(0.0, 40.0, 0.2))
+    storey = np.stack([x.ravel(), y.ravel(), np.full(x.size, 0.1)], axis=1)
+    up = np.array([0.0, 0.0, 1.0])
+    ditch = storey[storey[:, 0] > 30.0] - 2.5 * up
+    points = np.concatenate([storey, storey + 4.0 * up, ditch])
+    voxel_map = VoxelMap.from_points(points, MatcherOptions(voxel_size_m=1.0))
+    beside, over_ditch = (5.0, 0.0, -0.8), (15.0, 0.0, -0.8)  # 1.8 m above the floor
+    for floor_m in (0.1, 4.1):
+        at = pose(20.0, 20.0, floor_m + 1.8, 0.0, 0.0, 0.0)
+        found = voxel_map.finest.point_evidence(
+            np.array([beside, over_ditch], np.float32), at, DEFAULT.outlier_ratio
+        )
+        np.testing.assert_allclose(found[:, 1], 1.0, atol=0.1)
+
+
 @pytest.mark.parametrize("change", trust_variants.CHANGES.values(), ids=trust_variants.CHANGES)
 def test_right_first_poses_are_believed_within_one_scan_and_wrong_ones_refused(drive, change):
     changed = change(drive)
