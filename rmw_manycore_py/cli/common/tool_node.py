@@ -32,23 +32,36 @@ def tool_node(
     """
     enter_middleware()
     os.environ["MANYCORE_PLATFORM"] = platform
+    with any_node(name, sim_time=sim_time, until_ctrl_c=until_ctrl_c) as node:
+        yield node
+
+
+@contextmanager
+def any_node(
+    name: str | None = None, *, sim_time: bool = False, until_ctrl_c: bool = False
+) -> Iterator[Any]:
+    """Yield a node like :func:`tool_node`, of the middleware that is loaded."""
     import rclpy
     from rclpy.parameter import Parameter
     from rclpy.signals import SignalHandlerOptions
 
-    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
-    node = rclpy.create_node(
-        name or f"_manycore_{os.getpid()}",
-        enable_rosout=False,
-        start_parameter_services=False,
-        parameter_overrides=[Parameter("use_sim_time", value=sim_time)],
-    )
+    node = None
     try:
+        with interrupts_held():
+            rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+            node = rclpy.create_node(
+                name or f"_manycore_{os.getpid()}",
+                enable_rosout=False,
+                start_parameter_services=False,
+                parameter_overrides=[Parameter("use_sim_time", value=sim_time)],
+            )
         with suppress(KeyboardInterrupt) if until_ctrl_c else nullcontext():
             yield node
     finally:
-        node.destroy_node()
-        rclpy.shutdown()
+        with interrupts_held():
+            if node is not None:
+                node.destroy_node()
+            rclpy.try_shutdown()
 
 
 def result_of(node: Any, ask: Callable[[], Any], whose: str) -> Any:

@@ -6,18 +6,17 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from typing import Any
 
 from rmw_manycore_hook import restart
 from rmw_manycore_py.cli.common.interface_types import load_type
+from rmw_manycore_py.cli.common.tool_node import any_node
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.processes.environment import OUTSIDE_IMPLEMENTATION, outside_environment
+from rmw_manycore_py.process.signals import interrupts_held
+from rmw_manycore_py.process.spinning import spin_once
 from rmw_manycore_py.ros.names import expand
-
-# Period at which the listener looks for publishers.
-_LOOK_S = 0.1
 
 
 class OutsideListener:
@@ -46,25 +45,13 @@ class OutsideListener:
 
         An interrupt raises KeyboardInterrupt only without `until_ctrl_c`.
         """
-        import rclpy
-        from rclpy.executors import ExternalShutdownException
-
         end_s = float("inf") if timeout_s is None else time.monotonic() + timeout_s
-        rclpy.init(args=[])
-        node = rclpy.create_node(
-            f"_manycore_{os.getpid()}", enable_rosout=False, start_parameter_services=False
-        )
-        is_interrupted = True
-        with suppress(KeyboardInterrupt, ExternalShutdownException):
+        with any_node(until_ctrl_c=until_ctrl_c) as node:
             listens = False
             while not self._over and time.monotonic() < end_s:
-                listens = listens or self._subscribe(node)
-                rclpy.spin_once(node, timeout_sec=_LOOK_S)
-            is_interrupted = False
-        node.destroy_node()
-        rclpy.try_shutdown()
-        if is_interrupted and not until_ctrl_c:
-            raise KeyboardInterrupt
+                with interrupts_held():
+                    listens = listens or self._subscribe(node)
+                spin_once(node)
 
     def _subscribe(self, node: Any) -> bool:
         publishers = node.get_publishers_info_by_topic(self._topic)
