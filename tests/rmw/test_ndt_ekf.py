@@ -45,11 +45,11 @@ class Vehicle:
         self.now_s = round(self.now_s + 0.01, 2)
         self.clock.publish(Clock(clock=self._stamp()))
 
-    def send(self, T: np.ndarray, ahead_s: int = 0) -> None:
+    def send(self, T: np.ndarray, ahead_s: float = 0) -> None:
         """Publish a pose measured at a time."""
         self.poses.publish(pose_with_covariance(T, COVARIANCE, self._stamp(ahead_s), "map"))
 
-    def send_twist(self, ahead_s: int) -> None:
+    def send_twist(self, ahead_s: float) -> None:
         """Publish a twist of zero measured at a time."""
         message = TwistWithCovarianceStamped()
         message.header.stamp = self._stamp(ahead_s)
@@ -66,8 +66,9 @@ class Vehicle:
         stamps = (abs(m.header.stamp.sec - self.now_s) < 5.0 for m in self.heard[-1:])
         return any(near) and any(stamps)
 
-    def _stamp(self, ahead_s: int = 0) -> Time:
-        return Time(sec=int(self.now_s) + ahead_s, nanosec=round(self.now_s % 1 * 1e9))
+    def _stamp(self, ahead_s: float = 0) -> Time:
+        at_s = round(self.now_s + ahead_s, 2)
+        return Time(sec=int(at_s), nanosec=round(at_s % 1 * 1e9))
 
 
 @pytest.fixture
@@ -129,7 +130,8 @@ def test_a_speed_that_is_no_longer_measured_becomes_uncertain(node, vehicle):
     def is_sure() -> bool:
         return max(variances()) < 0.1
 
-    spin_until(node, lambda: vehicle.tick() or vehicle.send_twist(0) or is_sure())
+    # Of the next tick, so that the filter has it when it predicts to that.
+    spin_until(node, lambda: vehicle.send_twist(0.01) or vehicle.tick() or is_sure())
     before = variances()
     assert min(before) > 0.0
     spin_until(node, lambda: vehicle.tick() or min(variances()) > 10.0 * max(before))
