@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib.util
 import os
 import shutil
@@ -61,6 +62,19 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 def _is_installed(name: str) -> bool:
     """Return whether a program or a Python module of this name is installed."""
     return shutil.which(name) is not None or importlib.util.find_spec(name) is not None
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, Any, Any]:
+    """Collect without looking for garbage: what is collected stays until the end.
+
+    Nor is it looked at later, by this process or those that it forks.
+    """
+    gc.disable()
+    result = yield
+    gc.freeze()
+    gc.enable()
+    return result
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
