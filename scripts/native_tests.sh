@@ -19,14 +19,15 @@ python scripts/progress.py "$build.log" "compiling native tests in $build" \
   cmake --build "$build" -j "$jobs"
 [ -z "${COMPILE_ONLY:-}" ] || exit 0
 # Tests skipped under sanitizers:
-# - test_killed, test_killed_crowd and test_looks step through instructions, which takes minutes.
+# - test_killed, test_killed_crowd, test_looks and test_pinned_generations step through instructions,
+#   which takes minutes.
 # - test_periods counts for a minute what other tests count a few times.
 # - test_damaged_running crashes on damaged memory, on which a sanitizer's report may hang.
 # - test_closed_descriptors closes descriptors in use by other threads, which is a data race.
 # - test_process_threads waits until all threads of a process sleep; the thread sanitizer has one of
 #   its own in each process, which never does for long.
 # - test_damage reads damaged files by one thread, which the address sanitizer looks at.
-always='test_killed.*|test_damaged_running|test_looks|test_periods'
+always='test_killed.*|test_damaged_running|test_looks|test_periods|test_pinned_generations'
 case "$*" in
   *SANITIZE=thread*)
     skipped="^($always|test_closed_descriptors|test_damage|test_process_threads)$"
