@@ -19,8 +19,8 @@ python scripts/progress.py "$build.log" "compiling native tests in $build" \
   cmake --build "$build" -j "$jobs"
 [ -z "${COMPILE_ONLY:-}" ] || exit 0
 # Tests skipped under sanitizers:
-# - test_killed, test_killed_crowd, test_looks and test_pinned_generations step through instructions,
-#   which takes minutes.
+# - test_killed, test_killed_crowd, test_looks and test_pinned_generations step through
+#   instructions, which takes minutes.
 # - test_periods counts for a minute what other tests count a few times.
 # - test_damaged_running crashes on damaged memory, on which a sanitizer's report may hang.
 # - test_closed_descriptors closes descriptors in use by other threads, which is a data race.

@@ -66,7 +66,9 @@ def test_heights_are_above_the_floor_of_the_sensors_storey():
     storey = np.stack([x.ravel(), y.ravel(), np.full(x.size, 0.1)], axis=1)
     up = np.array([0.0, 0.0, 1.0])
     ditch = storey[storey[:, 0] > 30.0] - 2.5 * up
-    points = np.concatenate([storey, storey + 4.0 * up, ditch])
+    is_under_sensor = (np.abs(storey[:, :2] - 20.0) < (0.9, 1.4)).all(axis=1)
+    roof = storey[is_under_sensor] + 1.5 * up  # of a vehicle that was parked there
+    points = np.concatenate([storey, storey + 4.0 * up, ditch, roof, roof + 4.0 * up])
     voxel_map = VoxelMap.from_points(points, MatcherOptions(voxel_size_m=1.0))
     beside, over_ditch = (5.0, 0.0, -0.8), (15.0, 0.0, -0.8)  # 1.8 m above the floor
     for floor_m in (0.1, 4.1):
