@@ -96,7 +96,7 @@ def test_without_a_first_pose_the_vehicle_stands(start, platform, course, tmp_pa
     for file in ("map.npz", "trajectory.csv", "streets.npz"):
         (tmp_path / file).symlink_to(course / file)
     (tmp_path / "whill.yaml").write_text(yaml.safe_dump({**mapfile, "nodes": nodes}))
-    enough = ("--timeout", "40")  # for the nodes to come up
+    enough = ("--timeout", "20")  # for the nodes to come up
     drive = start(manycore_command("whill", "drive", "--course", tmp_path, "--run", *enough))
     assert drive.wait(LONG_S) == 1
     assert "follower: waiting for input/kinematics: no command is published" in drive.output
