@@ -115,10 +115,11 @@ struct Column {
   float around;   ///< columns with voxels among the eight around it
 };
 
-/// Columns of the map, each looked at once. The floor of one is that of the sensor's storey, if it
-/// has that, else its lowest voxel.
+/// Columns of the map, each looked at once. The floor of one is that of the sensor's storey, if a
+/// sensor is given and the column has that, else its lowest voxel.
 class Columns {
 public:
+  explicit Columns(const MapView & map) : map_(map) {}
   Columns(const MapView & map, const Vector3 & sensor_m)
   : map_(map), sensors_floor_m_(floor_around(sensor_m)) {}
 
@@ -174,6 +175,7 @@ private:
 
   float floor_m(int32_t x, int32_t y) {
     const auto [entry, is_new] = floor_m_.try_emplace(key_of(x, y), std::nanf(""));
+    const float lowest_m = sensors_floor_m_ - storey_within_m;
     for (int32_t z = 0; is_new && z < map_.header->cells[2]; ++z) {
       const VoxelLine * const voxel = own_voxel(map_, {x, y, z});
       if (voxel == nullptr) {
@@ -181,7 +183,6 @@ private:
       }
       const float height_m = voxel->mean_m[2];
       const bool is_beyond = !(height_m < sensors_floor_m_ + storey_within_m);
-      const float lowest_m = sensors_floor_m_ - storey_within_m;
       if (std::isnan(entry->second) || (!is_beyond && height_m > lowest_m && is_floor(*voxel))) {
         entry->second = height_m;
       }
@@ -195,7 +196,7 @@ private:
   const MapView & map_;
   std::unordered_map<uint64_t, Column> columns_;
   std::unordered_map<uint64_t, float> floor_m_;
-  const float sensors_floor_m_;  // NaN without one
+  const float sensors_floor_m_ = std::nanf("");
 };
 
 /// Whether a ray passes through the surface of a planar voxel to a place clearly behind it.
@@ -322,7 +323,7 @@ void point_evidence(
 void columns_around(
   const MapView & map, const Pose6 & pose, const float * xyz_m, size_t count, uint8_t * around) {
   const Places places(map, pose);
-  Columns columns(map, places.from_m());
+  Columns columns(map);  // only whether they have voxels
   for (size_t point = 0; point < count; ++point) {
     const Vector3 place_m = places.of(xyz_m + 3 * point);
     around[point] = 0;
